@@ -1,0 +1,11 @@
+# Embree 4 where it is to be had, else 3 (Debian 12): target fluxfarm::embree with the found major as FLUXFARM_EMBREE_MAJOR.
+find_package(embree 4 CONFIG QUIET)
+if(NOT embree_FOUND)
+  find_package(embree 3 CONFIG REQUIRED)
+endif()
+string(REGEX MATCH "^[0-9]+" FLUXFARM_EMBREE_MAJOR "${embree_VERSION}")
+message(STATUS "Embree ${embree_VERSION}")
+add_library(fluxfarm_embree INTERFACE)
+target_link_libraries(fluxfarm_embree INTERFACE embree)
+target_compile_definitions(fluxfarm_embree INTERFACE FLUXFARM_EMBREE_MAJOR=${FLUXFARM_EMBREE_MAJOR})
+add_library(fluxfarm::embree ALIAS fluxfarm_embree)

@@ -1,0 +1,52 @@
+// Finds where rays meet shapes. The only room that knows Embree.
+//
+// Embree 3.13 and 4.x both serve. The header's and the library's version are compared at start: a mismatch reads hits from the
+// wrong place without any error (seen with 4.2 headers and a 4.4 library).
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <string>
+
+#include "geometry/disk.h"
+#include "geometry/rectangle.h"
+#include "geometry/sphere.h"
+#include "geometry/surface_point.h"
+#include "geometry/triangle_mesh.h"
+#include "math/ray.h"
+
+namespace fluxfarm {
+
+// Version of the loaded library and the instruction sets it may use, for `info`.
+std::string ray_library_version();
+
+// Switches the calling thread to flush denormals to zero, as Embree asks of every thread that traces rays.
+void prepare_render_thread();
+
+class RayAccelerator {
+ public:
+  // `threads`: how many build the tree; 0 takes all.
+  explicit RayAccelerator(int threads);
+  ~RayAccelerator();
+  RayAccelerator(const RayAccelerator&) = delete;
+  RayAccelerator& operator=(const RayAccelerator&) = delete;
+
+  // Adds a shape, which must outlive this; Hit::shape counts shapes in the order of these calls.
+  void add(const TriangleMesh& mesh);
+  void add(const Rectangle& rectangle);
+  void add(const Disk& disk);
+  void add(const Sphere& sphere);
+  // Call once, after the last add. Throws ResourceError when memory runs out.
+  void build();
+
+  // Nearest hit in (t_min, t_max); false if there is none.
+  bool intersect(const Ray& ray, Hit& hit) const;
+  // Whether anything lies in (t_min, t_max).
+  bool occluded(const Ray& ray) const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace fluxfarm

@@ -1,0 +1,20 @@
+#include "emitters/emitter.h"
+
+namespace fluxfarm {
+
+std::optional<EmitterSample> AreaEmitter::sample(Vec3f reference, Vec2f u) const {
+  const std::optional<ShapeSample> s = shape_.sample(reference, u);
+  if (!s || dot(s->normal, s->wi) >= 0) return std::nullopt;
+  return EmitterSample{s->position, s->normal,          s->wi, s->distance, radiance_ / s->pdf_solid_angle,
+                       s->pdf_solid_angle, false};
+}
+
+std::optional<EmitterSample> PointEmitter::sample(Vec3f reference, Vec2f) const {
+  const Vec3f d = position_ - reference;
+  const float squared = length_squared(d);
+  if (!(squared > 0)) return std::nullopt;
+  const float distance = std::sqrt(squared);
+  return EmitterSample{position_, {}, d / distance, distance, intensity_ / squared, 0, true};
+}
+
+}  // namespace fluxfarm

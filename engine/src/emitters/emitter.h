@@ -1,0 +1,67 @@
+// Sources of light as next-event estimation sees them.
+//
+// Area and point emitters can be chosen and sampled from a reference point. The constant environment cannot: from a surface the
+// BSDF's own sampling finds it with less variance and without a choice of direction of its own (its share of the multiple
+// importance weights is zero), so it only answers what radiance a ray that leaves the scene brings back.
+#pragma once
+
+#include <optional>
+
+#include "geometry/shape.h"
+#include "math/rgb.h"
+#include "math/vec.h"
+
+namespace fluxfarm {
+
+// Light that arrives at a reference point, if nothing is in between.
+struct EmitterSample {
+  Vec3f position;
+  Vec3f normal;               // unit, front side of the emitter there; zero for a point
+  Vec3f wi;                   // unit, from the reference point towards `position`
+  float distance = 0;         // m
+  Rgb weight;                 // radiance over pdf_solid_angle; for a point I / distance^2. W m^-2
+  float pdf_solid_angle = 0;  // sr^-1; 0 for a delta position
+  bool delta = false;         // BSDF sampling cannot find it
+};
+
+class Emitter {
+ public:
+  virtual ~Emitter() = default;
+  // Chooses a point of the emitter as seen from `reference`. Empty: no light can come from there.
+  virtual std::optional<EmitterSample> sample(Vec3f reference, Vec2f u) const = 0;
+  virtual Rgb power() const = 0;  // W
+};
+
+class AreaEmitter final : public Emitter {
+ public:
+  // Emits `radiance` (W m^-2 sr^-1) from the front side of `shape`, which must outlive this.
+  AreaEmitter(const Shape& shape, Rgb radiance) : shape_(shape), radiance_(radiance) {}
+
+  std::optional<EmitterSample> sample(Vec3f reference, Vec2f u) const override;
+  Rgb power() const override { return radiance_ * (kPi * shape_.area()); }
+
+  // Radiance that leaves `point` towards -wi, where wi is the direction in which the point is seen. Zero on the back.
+  Rgb radiance(const SurfacePoint& point, Vec3f wi) const {
+    return dot(point.geometric_normal, wi) < 0 ? radiance_ : Rgb{};
+  }
+  const Shape& shape() const { return shape_; }
+
+ private:
+  const Shape& shape_;
+  Rgb radiance_;
+};
+
+class PointEmitter final : public Emitter {
+ public:
+  // Intensity in W sr^-1.
+  PointEmitter(Vec3f position, Rgb intensity) : position_(position), intensity_(intensity) {}
+
+  std::optional<EmitterSample> sample(Vec3f reference, Vec2f u) const override;
+  Rgb power() const override { return intensity_ * (4 * kPi); }
+
+ private:
+  Vec3f position_;
+  Rgb intensity_;
+};
+
+}  // namespace fluxfarm

@@ -1,0 +1,200 @@
+#include "film/film.h"
+
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <fstream>
+#include <limits>
+
+#include "support/error.h"
+
+namespace fluxfarm {
+namespace {
+
+constexpr char kMagic[8] = {'F', 'L', 'U', 'X', 'F', 'L', 'M', '1'};
+constexpr float kNoDepth = 1e10f;
+
+// Samples 0 .. n-1 fall round-robin into the replicates.
+std::uint32_t replicate_samples(std::uint32_t samples, std::uint32_t replicate) {
+  return (samples + kFilmReplicates - 1 - replicate) / kFilmReplicates;
+}
+
+struct PixelMean {
+  double mean[3];
+  double variance[3];  // of the mean
+  double luminance_variance;
+  bool has_variance;
+};
+
+constexpr double kLuminance[3] = {0.2126, 0.7152, 0.0722};
+
+PixelMean pixel_mean(const double radiance[kFilmReplicates][3], std::uint32_t samples) {
+  PixelMean result{};
+  if (samples == 0) return result;
+  const double total = samples;
+  for (int c = 0; c < 3; ++c) {
+    for (std::uint32_t r = 0; r < kFilmReplicates; ++r) result.mean[c] += radiance[r][c];
+    result.mean[c] /= total;
+  }
+  const std::uint32_t replicates = std::min(samples, kFilmReplicates);
+  result.has_variance = replicates >= 2;
+  if (!result.has_variance) return result;
+  for (std::uint32_t r = 0; r < replicates; ++r) {
+    const double count = replicate_samples(samples, r);
+    double luminance = 0;
+    for (int c = 0; c < 3; ++c) {
+      const double deviation = (radiance[r][c] - count * result.mean[c]) / total;  // (n_r / N) (m_r - I)
+      result.variance[c] += deviation * deviation;
+      luminance += kLuminance[c] * deviation;
+    }
+    result.luminance_variance += luminance * luminance;
+  }
+  const double factor = replicates / (replicates - 1.0);
+  for (double& variance : result.variance) variance *= factor;
+  result.luminance_variance *= factor;
+  return result;
+}
+
+template <typename T>
+void write_value(std::ofstream& out, const T& value) {
+  out.write(reinterpret_cast<const char*>(&value), sizeof value);
+}
+
+template <typename T>
+void read_value(std::ifstream& in, T& value) {
+  in.read(reinterpret_cast<char*>(&value), sizeof value);
+}
+
+}  // namespace
+
+Film::Film(int width, int height, PixelRect crop)
+    : width_(width), height_(height), crop_(crop), pixels_(static_cast<std::size_t>(crop.pixels())) {}
+
+void Film::merge(const TileSums& tile) {
+  if (!crop_.contains(tile.rect) || tile.radiance.size() != tile.radiance_size() ||
+      tile.features.size() != tile.features_size()) {
+    throw Error("tile does not fit the film: rect " + std::to_string(tile.rect.x) + "," + std::to_string(tile.rect.y) + " " +
+                std::to_string(tile.rect.width) + "x" + std::to_string(tile.rect.height));
+  }
+  const std::uint32_t replicates = tile.replicates();
+  const float* radiance = tile.radiance.data();
+  const float* features = tile.features.data();
+  for (int y = tile.rect.y; y < tile.rect.y + tile.rect.height; ++y) {
+    for (int x = tile.rect.x; x < tile.rect.x + tile.rect.width; ++x) {
+      Pixel& p = pixels_[static_cast<std::size_t>(y - crop_.y) * crop_.width + (x - crop_.x)];
+      if (p.samples != tile.samples.begin) {
+        throw Error("tile at " + std::to_string(tile.rect.x) + "," + std::to_string(tile.rect.y) + " begins at sample " +
+                    std::to_string(tile.samples.begin) + ", but the film has " + std::to_string(p.samples));
+      }
+      for (std::uint32_t k = 0; k < replicates; ++k) {
+        double* sum = p.radiance[(tile.samples.begin + k) % kFilmReplicates];
+        for (int c = 0; c < 3; ++c) sum[c] += static_cast<double>(*radiance++);
+      }
+      for (double& feature : p.features) feature += static_cast<double>(*features++);
+      p.samples = tile.samples.end;
+    }
+  }
+  non_finite_samples_ += tile.non_finite_samples;
+}
+
+FilmSummary Film::summary() const {
+  FilmSummary result;
+  result.non_finite_samples = non_finite_samples_;
+  if (pixels_.empty()) return result;
+  result.min_samples = std::numeric_limits<std::uint32_t>::max();
+  double squares = 0;
+  bool has_variance = true;
+  for (const Pixel& p : pixels_) {
+    const PixelMean m = pixel_mean(p.radiance, p.samples);
+    result.min_samples = std::min(result.min_samples, p.samples);
+    result.max_samples = std::max(result.max_samples, p.samples);
+    has_variance = has_variance && m.has_variance;
+    for (int c = 0; c < 3; ++c) {
+      result.mean[c] += m.mean[c];
+      squares += m.variance[c] / (m.mean[c] * m.mean[c] + 1e-2);
+    }
+  }
+  const double count = static_cast<double>(pixels_.size());
+  for (double& mean : result.mean) mean /= count;
+  if (has_variance) result.error_noise = std::sqrt(squares / (3 * count));
+  return result;
+}
+
+Image Film::image(PixelRect rect, const ImageInfo& info) const {
+  static constexpr std::array kNames = {"R",   "G",   "B",   "albedo.R", "albedo.G",    "albedo.B",
+                                        "N.X", "N.Y", "N.Z", "Z",        "error.noise", "samples"};
+  if (!crop_.contains(rect)) throw Error("the part of the film that was asked for lies outside its crop");
+  Image image{width_, height_, rect, {}, {}};
+  for (const char* name : kNames) {
+    image.channels.push_back({name, {}});
+    image.channels.back().values.reserve(static_cast<std::size_t>(rect.pixels()));
+  }
+  std::uint32_t max_samples = 0;
+  for (int y = rect.y; y < rect.y + rect.height; ++y) {
+    for (int x = rect.x; x < rect.x + rect.width; ++x) {
+      const Pixel& p = pixel(x, y);
+      const PixelMean m = pixel_mean(p.radiance, p.samples);
+      const double scale = p.samples > 0 ? 1.0 / p.samples : 0.0;
+      const double hits = p.features[7];
+      std::size_t channel = 0;
+      const auto put = [&](double value) { image.channels[channel++].values.push_back(static_cast<float>(value)); };
+      for (const double value : m.mean) put(value);
+      for (int f = 0; f < 6; ++f) put(p.features[f] * scale);
+      put(hits > 0 ? p.features[6] / hits : kNoDepth);
+      put(m.has_variance ? std::sqrt(m.luminance_variance) : std::numeric_limits<double>::infinity());
+      put(p.samples);
+      max_samples = std::max(max_samples, p.samples);
+    }
+  }
+  image.attributes = {{"fluxfarm.job", info.job},
+                      {"fluxfarm.sceneDigest", info.scene_digest},
+                      {"fluxfarm.integrator", info.integrator},
+                      {"fluxfarm.samples", static_cast<int>(max_samples)},
+                      {"fluxfarm.seed", std::to_string(info.seed)},
+                      {"fluxfarm.engine", info.engine_build},
+                      {"fluxfarm.noiseInterval95", kNoiseInterval95}};
+  return image;
+}
+
+Rgb Film::replicate_mean(int x, int y, std::uint32_t replicate) const {
+  const Pixel& p = pixel(x, y);
+  const double count = replicate_samples(p.samples, replicate);
+  if (count == 0) return {};
+  const double* sum = p.radiance[replicate];
+  return {static_cast<float>(sum[0] / count), static_cast<float>(sum[1] / count), static_cast<float>(sum[2] / count)};
+}
+
+const Film::Pixel& Film::pixel(int x, int y) const {
+  return pixels_[static_cast<std::size_t>(y - crop_.y) * crop_.width + (x - crop_.x)];
+}
+
+void Film::save(const std::filesystem::path& path) const {
+  static_assert(std::is_trivially_copyable_v<Pixel> && sizeof(Pixel) == 8 * (3 * kFilmReplicates + kFeatures + 1));
+  std::ofstream out(path, std::ios::binary);
+  out.write(kMagic, sizeof kMagic);
+  for (const int value : {width_, height_, crop_.x, crop_.y, crop_.width, crop_.height}) write_value(out, value);
+  write_value(out, non_finite_samples_);
+  out.write(reinterpret_cast<const char*>(pixels_.data()), static_cast<std::streamsize>(pixels_.size() * sizeof(Pixel)));
+  out.flush();
+  if (!out) throw ResourceError(path.string() + ": cannot write the film, is the disk full?");
+}
+
+Film Film::load(const std::filesystem::path& path) {
+  std::ifstream in(path, std::ios::binary);
+  char magic[sizeof kMagic] = {};
+  in.read(magic, sizeof magic);
+  if (!in || std::memcmp(magic, kMagic, sizeof kMagic) != 0) throw ResourceError(path.string() + ": not a film file");
+  int width = 0, height = 0;
+  PixelRect crop;
+  for (int* value : {&width, &height, &crop.x, &crop.y, &crop.width, &crop.height}) read_value(in, *value);
+  if (!in || crop.empty() || !PixelRect{0, 0, width, height}.contains(crop)) {
+    throw ResourceError(path.string() + ": damaged film header");
+  }
+  Film film(width, height, crop);
+  read_value(in, film.non_finite_samples_);
+  in.read(reinterpret_cast<char*>(film.pixels_.data()), static_cast<std::streamsize>(film.pixels_.size() * sizeof(Pixel)));
+  if (!in) throw ResourceError(path.string() + ": film file is cut short");
+  return film;
+}
+
+}  // namespace fluxfarm

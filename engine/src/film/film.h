@@ -1,0 +1,79 @@
+// The film: running sums of a frame, per pixel and replicate. Sums and counts, never means; merging is addition.
+//
+// Bits: a pass's sums arrive as float32 and are added in double, pass after pass in sample order. As each pixel belongs to one
+// tile of a pass, the order of tiles, their size and who rendered them cannot change a bit.
+//
+// Error: with replicate means m_r of R independent scrambles, the variance of the pixel mean I is estimated by
+// R/(R-1) sum_r (n_r/N)^2 (m_r - I)^2, which is the usual sum (m_r - I)^2 / (R) when the counts n_r are equal.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "film/image.h"
+#include "film/pixel_rect.h"
+#include "film/tile_sums.h"
+#include "math/rgb.h"
+
+namespace fluxfarm {
+
+// 97.5 % quantile of Student's t with R - 1 = 7 degrees of freedom: pixel mean +- kNoiseInterval95 * error.noise is the 95 % interval.
+inline constexpr float kNoiseInterval95 = 2.364624f;
+
+struct FilmSummary {
+  std::uint32_t min_samples = 0, max_samples = 0;
+  // sqrt of the estimated relMSE, mean over pixels and channels of Var(I) / (I^2 + 1e-2); absent below two replicates.
+  std::optional<double> error_noise;
+  double mean[3] = {0, 0, 0};
+  std::uint64_t non_finite_samples = 0;
+};
+
+// What the EXR header says beside the pixels.
+struct ImageInfo {
+  std::string job, scene_digest, integrator, engine_build;
+  std::uint64_t seed = 0;
+};
+
+class Film {
+ public:
+  // Holds the pixels of `crop` of a width x height frame.
+  Film(int width, int height, PixelRect crop);
+
+  // Reads what save() wrote. Throws ResourceError when the file cannot be read or is not a film.
+  static Film load(const std::filesystem::path& path);
+  void save(const std::filesystem::path& path) const;
+
+  // Adds one tile's sums. The tile must lie in the crop and carry on where its pixels' samples end: Error otherwise.
+  void merge(const TileSums& tile);
+
+  FilmSummary summary() const;
+  // Layers R G B, albedo.*, N.*, Z, error.noise, samples of `rect` (inside the crop), with header attributes.
+  // error.noise is the standard error of the pixel's Rec.709 luminance; infinite below two replicates: no claim.
+  // Z is the mean depth of the samples that hit something, 1e10 where none did.
+  Image image(PixelRect rect, const ImageInfo& info) const;
+
+  int width() const { return width_; }
+  int height() const { return height_; }
+  PixelRect crop() const { return crop_; }
+  // Sum of one replicate of the pixel at (x, y) of the frame; for tests and tools.
+  Rgb replicate_mean(int x, int y, std::uint32_t replicate) const;
+
+ private:
+  struct Pixel {
+    double radiance[kFilmReplicates][3] = {};
+    double features[kFeatures] = {};
+    std::uint32_t samples = 0;
+    std::uint32_t padding = 0;  // written to the film file: keep it zero
+  };
+  const Pixel& pixel(int x, int y) const;
+
+  int width_, height_;
+  PixelRect crop_;
+  std::uint64_t non_finite_samples_ = 0;
+  std::vector<Pixel> pixels_;
+};
+
+}  // namespace fluxfarm

@@ -1,0 +1,37 @@
+// Sums of one tile over the samples of one pass: what a task returns, a value that adds to a Film.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "film/pixel_rect.h"
+#include "math/rgb.h"
+#include "math/vec.h"
+
+namespace fluxfarm {
+
+// Replicates of a pixel; must equal sampling's kReplicates (checked where both meet, in the tile runner).
+inline constexpr std::uint32_t kFilmReplicates = 8;
+
+// Features of the first hit, summed: albedo R G B, shading normal x y z, depth along the view axis (m), number of hits.
+inline constexpr int kFeatures = 8;
+
+struct TileSums {
+  PixelRect rect;
+  SampleRange samples;
+  std::uint64_t seed = 0;
+  // [pixel][k][R G B], k = 0 .. replicates() - 1: the k-th replicate is that of sample samples.begin + k.
+  std::vector<float> radiance;
+  // [pixel][kFeatures]
+  std::vector<float> features;
+  // Samples whose radiance was not finite; they are in the sums as zero.
+  std::uint64_t non_finite_samples = 0;
+
+  std::uint32_t replicates() const { return std::min(samples.size(), kFilmReplicates); }
+  std::size_t radiance_size() const { return static_cast<std::size_t>(rect.pixels()) * replicates() * 3; }
+  std::size_t features_size() const { return static_cast<std::size_t>(rect.pixels()) * kFeatures; }
+};
+
+}  // namespace fluxfarm

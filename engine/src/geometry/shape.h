@@ -1,0 +1,52 @@
+// Shapes: triangle mesh, rectangle, disk, sphere. Each knows its surface at a hit and how to sample itself as seen from a point.
+//
+// Shapes are immutable. Finding hits is the business of accel/.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "geometry/surface_point.h"
+#include "math/bounds.h"
+#include "math/ray.h"
+#include "math/vec.h"
+
+namespace fluxfarm {
+
+// A point of a surface chosen as seen from a reference point.
+struct ShapeSample {
+  Vec3f position;
+  Vec3f normal;              // unit, front side
+  Vec3f wi;                  // unit, from the reference point to `position`
+  float distance = 0;        // m
+  float pdf_solid_angle = 0;  // of wi, at the reference point, sr^-1
+};
+
+class Shape {
+ public:
+  virtual ~Shape() = default;
+
+  // Surface at a hit of `ray` on this shape.
+  virtual SurfacePoint surface_point(const Ray& ray, const Hit& hit) const = 0;
+
+  // Direction of increasing u at a hit (world, unit, not necessarily orthogonal to the normal); frames of anisotropic materials.
+  virtual Vec3f tangent(const SurfacePoint& point, const Hit& hit) const = 0;
+
+  // Chooses a point of the surface as seen from `reference`. Empty: nothing of it can be seen with that random number.
+  virtual std::optional<ShapeSample> sample(Vec3f reference, Vec2f u) const = 0;
+
+  // Density, at `reference`, with which sample() would choose the direction towards `point` (a hit of this shape at `distance` m in
+  // the unit direction `wi`), sr^-1.
+  virtual float pdf(Vec3f reference, const SurfacePoint& point, std::uint32_t primitive, Vec3f wi, float distance) const = 0;
+
+  virtual float area() const = 0;  // m^2
+  virtual Bounds bounds() const = 0;
+};
+
+// Density per solid angle of a point chosen with `pdf_area` (m^-2); 0 when the surface is seen edge-on.
+inline float to_solid_angle(float pdf_area, float distance, float cos_at_light) {
+  const float cosine = std::fabs(cos_at_light);
+  return cosine > 0 ? pdf_area * distance * distance / cosine : 0.0f;
+}
+
+}  // namespace fluxfarm

@@ -1,0 +1,69 @@
+#include "geometry/sphere.h"
+
+#include "math/frame.h"
+
+namespace fluxfarm {
+
+SurfacePoint Sphere::surface_point(const Ray& ray, const Hit& hit) const {
+  // Projected back onto the sphere: the ray's own rounding grows with the distance travelled.
+  const Vec3f outward = normalize(ray.origin + hit.t * ray.direction - center_);
+  const Vec3f normal = inward_ ? -outward : outward;
+  return {center_ + radius_ * outward, normal, normal};
+}
+
+Vec3f Sphere::tangent(const SurfacePoint& point, const Hit&) const {
+  // Along the parallels around z; anything at the poles.
+  const Vec3f local = point.position - center_;
+  const float horizontal = std::sqrt(local.x * local.x + local.y * local.y);
+  return horizontal > 0 ? Vec3f{-local.y / horizontal, local.x / horizontal, 0} : Vec3f{1, 0, 0};
+}
+
+float Sphere::one_minus_cos(float d2) const {
+  const float sin2 = radius_ * radius_ / d2;
+  return sin2 / (1 + safe_sqrt(1 - sin2));
+}
+
+std::optional<ShapeSample> Sphere::sample(Vec3f reference, Vec2f u) const {
+  const Vec3f to_center = center_ - reference;
+  const float d2 = length_squared(to_center);
+  const float phi = kTwoPi * u.y;
+  if (!is_outside(d2)) {
+    // From inside: uniform over the area.
+    const float z = 1 - 2 * u.x;
+    const float r = safe_sqrt(1 - z * z);
+    const Vec3f outward{r * std::cos(phi), r * std::sin(phi), z};
+    const Vec3f position = center_ + radius_ * outward;
+    const Vec3f d = position - reference;
+    const float distance = length(d);
+    if (!(distance > 0)) return std::nullopt;
+    const Vec3f wi = d / distance;
+    const float pdf_solid_angle = to_solid_angle(1 / area(), distance, dot(outward, wi));
+    if (!(pdf_solid_angle > 0)) return std::nullopt;
+    return ShapeSample{position, inward_ ? -outward : outward, wi, distance, pdf_solid_angle};
+  }
+  // Uniform in the cone that the sphere fills.
+  const float d = std::sqrt(d2);
+  const float cone = one_minus_cos(d2);
+  const float one_minus_cos_theta = u.x * cone;
+  const float cos_theta = 1 - one_minus_cos_theta;
+  const float sin2_theta = one_minus_cos_theta * (2 - one_minus_cos_theta);
+  const float sin_theta = safe_sqrt(sin2_theta);
+  const Frame frame(to_center / d);
+  const Vec3f wi = frame.to_world({sin_theta * std::cos(phi), sin_theta * std::sin(phi), cos_theta});
+  const float distance = d * cos_theta - safe_sqrt(radius_ * radius_ - d2 * sin2_theta);
+  const Vec3f outward = normalize(reference + distance * wi - center_);
+  return ShapeSample{center_ + radius_ * outward, inward_ ? -outward : outward, wi, distance, 1 / (kTwoPi * cone)};
+}
+
+float Sphere::pdf(Vec3f reference, const SurfacePoint& point, std::uint32_t, Vec3f wi, float distance) const {
+  const float d2 = length_squared(center_ - reference);
+  if (!is_outside(d2)) return to_solid_angle(1 / area(), distance, dot(point.geometric_normal, wi));
+  return 1 / (kTwoPi * one_minus_cos(d2));
+}
+
+Bounds Sphere::bounds() const {
+  const Vec3f r{radius_, radius_, radius_};
+  return {center_ - r, center_ + r};
+}
+
+}  // namespace fluxfarm

@@ -1,0 +1,34 @@
+// Sphere, sampled as a light by the cone of directions in which it is seen.
+#pragma once
+
+#include "geometry/shape.h"
+
+namespace fluxfarm {
+
+class Sphere final : public Shape {
+ public:
+  // `inward`: the front side is the inner one. radius > 0, m.
+  Sphere(Vec3f center, float radius, bool inward) : center_(center), radius_(radius), inward_(inward) {}
+
+  SurfacePoint surface_point(const Ray& ray, const Hit& hit) const override;
+  Vec3f tangent(const SurfacePoint& point, const Hit& hit) const override;
+  // From outside by solid angle, from inside (or on the surface) by area.
+  std::optional<ShapeSample> sample(Vec3f reference, Vec2f u) const override;
+  float pdf(Vec3f reference, const SurfacePoint& point, std::uint32_t primitive, Vec3f wi, float distance) const override;
+  float area() const override { return 4 * kPi * radius_ * radius_; }
+  Bounds bounds() const override;
+
+  Vec3f center() const { return center_; }
+  float radius() const { return radius_; }
+
+ private:
+  // 1 - cosine of the cone's half angle as seen from squared distance d2 to the centre, without cancellation.
+  float one_minus_cos(float d2) const;
+  bool is_outside(float d2) const { return d2 > radius_ * radius_ * 1.0002f; }
+
+  Vec3f center_;
+  float radius_;
+  bool inward_;
+};
+
+}  // namespace fluxfarm

@@ -1,0 +1,81 @@
+#include "geometry/triangle_mesh.h"
+
+#include <utility>
+
+namespace fluxfarm {
+
+TriangleMesh::TriangleMesh(Data data, bool flipped, bool emissive) : data_(std::move(data)), side_(flipped ? -1.0f : 1.0f) {
+  data_.positions.reserve(data_.positions.size() + 1);  // ray tracing libraries read 16 bytes at each vertex
+  std::vector<double> areas(triangles());
+  double total = 0;
+  for (std::size_t i = 0; i < areas.size(); ++i) {
+    const auto [a, b, c] = corners(static_cast<std::uint32_t>(i));
+    areas[i] = 0.5 * static_cast<double>(length(cross(b - a, c - a)));
+    total += areas[i];
+  }
+  area_ = static_cast<float>(total);
+  if (emissive) by_area_ = DiscreteDistribution(areas);
+}
+
+TriangleMesh::Corners TriangleMesh::corners(std::uint32_t triangle) const {
+  const std::uint32_t* index = data_.indices.data() + 3 * static_cast<std::size_t>(triangle);
+  return {data_.positions[index[0]], data_.positions[index[1]], data_.positions[index[2]]};
+}
+
+SurfacePoint TriangleMesh::surface_point(const Ray&, const Hit& hit) const {
+  const auto [a, b, c] = corners(hit.primitive);
+  const Vec3f e1 = b - a, e2 = c - a;
+  SurfacePoint point;
+  point.position = a + hit.u * e1 + hit.v * e2;
+  point.geometric_normal = side_ * normalize(cross(e1, e2));
+  point.shading_normal = point.geometric_normal;
+  if (!data_.normals.empty()) {
+    const std::uint32_t* index = data_.indices.data() + 3 * static_cast<std::size_t>(hit.primitive);
+    const Vec3f n = (1 - hit.u - hit.v) * data_.normals[index[0]] + hit.u * data_.normals[index[1]] +
+                    hit.v * data_.normals[index[2]];
+    const float squared = length_squared(n);
+    if (squared > 0) point.shading_normal = (side_ / std::sqrt(squared)) * n;
+  }
+  return point;
+}
+
+Vec3f TriangleMesh::tangent(const SurfacePoint&, const Hit& hit) const {
+  const auto [a, b, c] = corners(hit.primitive);
+  const Vec3f e1 = b - a, e2 = c - a;
+  if (data_.uvs.empty()) return normalize(e1);
+  const std::uint32_t* index = data_.indices.data() + 3 * static_cast<std::size_t>(hit.primitive);
+  const Vec2f uv0 = data_.uvs[index[0]], uv1 = data_.uvs[index[1]], uv2 = data_.uvs[index[2]];
+  const float du1 = uv1.x - uv0.x, dv1 = uv1.y - uv0.y, du2 = uv2.x - uv0.x, dv2 = uv2.y - uv0.y;
+  const float determinant = du1 * dv2 - dv1 * du2;
+  const Vec3f d = (dv2 * e1 - dv1 * e2) * (determinant < 0 ? -1.0f : 1.0f);
+  return determinant != 0 && length_squared(d) > 0 ? normalize(d) : normalize(e1);
+}
+
+std::optional<ShapeSample> TriangleMesh::sample(Vec3f reference, Vec2f u) const {
+  const DiscreteDistribution::Choice choice = by_area_.sample(u.x);
+  const auto [a, b, c] = corners(static_cast<std::uint32_t>(choice.index));
+  // Uniform over the triangle.
+  const float root = std::sqrt(choice.u);
+  const float beta = root * (1 - u.y), gamma = root * u.y;
+  const Vec3f position = a + beta * (b - a) + gamma * (c - a);
+  const Vec3f normal = side_ * normalize(cross(b - a, c - a));
+  const Vec3f d = position - reference;
+  const float distance = length(d);
+  if (!(distance > 0)) return std::nullopt;
+  const Vec3f wi = d / distance;
+  const float pdf_solid_angle = to_solid_angle(1 / area_, distance, dot(normal, wi));
+  if (!(pdf_solid_angle > 0)) return std::nullopt;
+  return ShapeSample{position, normal, wi, distance, pdf_solid_angle};
+}
+
+float TriangleMesh::pdf(Vec3f, const SurfacePoint& point, std::uint32_t, Vec3f wi, float distance) const {
+  return to_solid_angle(1 / area_, distance, dot(point.geometric_normal, wi));
+}
+
+Bounds TriangleMesh::bounds() const {
+  Bounds result;
+  for (const Vec3f& p : data_.positions) result.extend(p);
+  return result;
+}
+
+}  // namespace fluxfarm

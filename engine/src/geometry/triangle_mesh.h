@@ -1,0 +1,44 @@
+// Indexed triangle mesh. As a light: a triangle by area, then a point of it by area.
+#pragma once
+
+#include <vector>
+
+#include "geometry/shape.h"
+#include "sampling/discrete_distribution.h"
+
+namespace fluxfarm {
+
+class TriangleMesh final : public Shape {
+ public:
+  struct Data {
+    std::vector<Vec3f> positions;        // world, m
+    std::vector<Vec3f> normals;          // per vertex, unit; or empty: flat
+    std::vector<Vec2f> uvs;              // per vertex; or empty
+    std::vector<std::uint32_t> indices;  // three per triangle, counter-clockwise seen from the front
+  };
+  // `flipped` swaps front and back. `emissive` builds the tables that sample() and pdf() need.
+  TriangleMesh(Data data, bool flipped, bool emissive);
+
+  SurfacePoint surface_point(const Ray& ray, const Hit& hit) const override;
+  Vec3f tangent(const SurfacePoint& point, const Hit& hit) const override;
+  std::optional<ShapeSample> sample(Vec3f reference, Vec2f u) const override;
+  float pdf(Vec3f reference, const SurfacePoint& point, std::uint32_t primitive, Vec3f wi, float distance) const override;
+  float area() const override { return area_; }
+  Bounds bounds() const override;
+
+  const Data& data() const { return data_; }
+  std::size_t triangles() const { return data_.indices.size() / 3; }
+
+ private:
+  struct Corners {
+    Vec3f a, b, c;
+  };
+  Corners corners(std::uint32_t triangle) const;
+
+  Data data_;
+  float side_;  // -1 when flipped
+  float area_ = 0;
+  DiscreteDistribution by_area_;
+};
+
+}  // namespace fluxfarm

@@ -1,0 +1,49 @@
+// The seam between a method and everything around it: prepare once, then answer batches of camera samples.
+//
+// A batch goes in and a batch of radiances comes out, so that a method may trace its rays one by one, in packets, or sorted,
+// without its caller knowing.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+
+#include "accel/ray_queries.h"
+#include "math/rgb.h"
+#include "math/vec.h"
+#include "scene/scene.h"
+
+namespace fluxfarm {
+
+// Sample `index` of pixel (x, y) of the full frame.
+struct CameraSample {
+  int x = 0, y = 0;
+  std::uint32_t index = 0;
+};
+
+// What a camera sample brings back.
+struct SampleResult {
+  Rgb radiance;   // W m^-2 sr^-1
+  Rgb albedo;     // of the first hit; of an emitter without reflection, black
+  Vec3f normal;   // shading normal of the first hit, world, turned towards the camera
+  float depth = 0;  // of the first hit along the view axis, m
+  bool hit = false;
+};
+
+class Integrator {
+ public:
+  virtual ~Integrator() = default;
+
+  // Builds what the method needs for this scene. Called once, before any radiance().
+  virtual void prepare(const Scene& scene) = 0;
+
+  // Estimates the radiance of each sample, in the order given. The result for a sample depends on the scene, the seed and the
+  // sample alone. Safe to call from many threads, each with its own queries.
+  virtual void radiance(std::span<const CameraSample> samples, std::uint64_t seed, std::span<SampleResult> results,
+                        RayQueries& queries) const = 0;
+};
+
+// The method of that name ("path"), or SettingError that names those there are. "" takes the scene's own.
+std::unique_ptr<Integrator> make_integrator(const std::string& name, const Scene& scene);
+
+}  // namespace fluxfarm

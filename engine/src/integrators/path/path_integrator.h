@@ -1,0 +1,30 @@
+// Path tracing: next-event estimation and BSDF sampling, joined by multiple importance sampling. Unbiased.
+//
+// Parameters (MethodDescription): max_depth, path edges, -1 without limit: a finite one is biased, it leaves longer paths out;
+// rr_depth, the first bounce at which Russian roulette may end a path; hide_emitters.
+// Good for: diffuse and glossy scenes with lights that can be seen from most places. Poor for: caustics from small lights, light
+// through small openings; a point light seen only through glass is never found (catalogue 4.8, C8).
+//
+// A path is an absorbing Markov chain: at each bounce it survives with a probability that follows its throughput, and the
+// survivors are weighted up by it, so the expectation is unchanged.
+// [Veach97] E. Veach, "Robust Monte Carlo Methods for Light Transport Simulation", PhD thesis, Stanford 1997.
+#pragma once
+
+#include "integrators/integrator.h"
+#include "sampling/sampler.h"
+
+namespace fluxfarm {
+
+class PathIntegrator final : public Integrator {
+ public:
+  void prepare(const Scene& scene) override { scene_ = &scene; }
+  void radiance(std::span<const CameraSample> samples, std::uint64_t seed, std::span<SampleResult> results,
+                RayQueries& queries) const override;
+
+ private:
+  SampleResult trace(Ray ray, Sampler& sampler, RayQueries& queries) const;
+
+  const Scene* scene_ = nullptr;
+};
+
+}  // namespace fluxfarm

@@ -1,0 +1,28 @@
+// Orthonormal frame around a normal; local directions have z along the normal.
+#pragma once
+
+#include <cmath>
+
+#include "math/vec.h"
+
+namespace fluxfarm {
+
+// [Duff17] T. Duff et al., "Building an Orthonormal Basis, Revisited", JCGT 6(1), 2017.
+struct Frame {
+  Vec3f s, t, n;
+
+  Frame() = default;
+  // `normal` must have unit length.                                                        [Duff17, listing 3]
+  explicit Frame(Vec3f normal) : n(normal) {
+    const float sign = std::copysign(1.0f, n.z);
+    const float a = -1.0f / (sign + n.z);
+    const float b = n.x * n.y * a;
+    s = {1.0f + sign * n.x * n.x * a, sign * b, -sign * n.x};
+    t = {b, sign + n.y * n.y * a, -n.y};
+  }
+
+  Vec3f to_local(Vec3f world) const { return {dot(world, s), dot(world, t), dot(world, n)}; }
+  Vec3f to_world(Vec3f local) const { return s * local.x + t * local.y + n * local.z; }
+};
+
+}  // namespace fluxfarm

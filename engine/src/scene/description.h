@@ -1,0 +1,108 @@
+// Plain description of a scene, as the readers in io/ fill it in and CompiledScene takes it. No behaviour, no rays.
+//
+// Units: metres, radiance W m^-2 sr^-1, intensity W sr^-1, linear Rec.709 RGB; right-handed, y up.
+// Every value was checked by the reader: finite, in range, references resolved to indices.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "materials/material_description.h"
+#include "math/rgb.h"
+#include "math/transform.h"
+#include "math/vec.h"
+#include "sampling/pixel_filter.h"
+
+namespace fluxfarm {
+
+// ---------------------------------------------------------------- shapes
+
+// Triangle mesh in world space. Normals and texture coordinates are per vertex or absent (empty).
+struct MeshDescription {
+  std::vector<Vec3f> positions;
+  std::vector<Vec3f> normals;  // unit length
+  std::vector<Vec2f> uvs;
+  std::vector<std::uint32_t> indices;  // three per triangle; counter-clockwise seen from the front
+};
+
+// Image of the square [-1,1]^2 x {0} with normal +z under an affine map.
+struct RectangleDescription {
+  Transform to_world;
+};
+
+// Image of the unit disk in the xy plane with normal +z; to_world must keep it a circle.
+struct DiskDescription {
+  Transform to_world;
+};
+
+// Normals point outwards, or inwards with ShapeDescription::flip_normals.
+struct SphereDescription {
+  Vec3f center;
+  float radius = 1;
+};
+
+struct ShapeDescription {
+  std::string name;  // id of the shape in the scene file, or its place there; for messages
+  std::variant<MeshDescription, RectangleDescription, DiskDescription, SphereDescription> geometry;
+  bool flip_normals = false;  // swaps front and back; the compiled scene applies it, the reader does not
+  int material = 0;           // index into SceneDescription::materials
+  std::optional<Rgb> emitted_radiance;  // area emitter on the front side
+};
+
+// ---------------------------------------------------------------- emitters without a shape
+
+struct PointEmitterDescription {
+  Vec3f position;
+  Rgb intensity{1.0f};  // W sr^-1
+};
+
+// The same radiance from every direction, from infinitely far away.
+struct ConstantEmitterDescription {
+  Rgb radiance{1.0f};
+};
+
+using EmitterDescription = std::variant<PointEmitterDescription, ConstantEmitterDescription>;
+
+// ---------------------------------------------------------------- camera, film, method
+
+struct FilmDescription {
+  int width = 768;
+  int height = 576;
+  // Part of the frame to render, in pixels; crop_width 0 means the full frame.
+  int crop_x = 0, crop_y = 0, crop_width = 0, crop_height = 0;
+  PixelFilterDescription filter;
+};
+
+// Perspective pinhole. Camera space: looks along +z, +y up, +x left.
+struct CameraDescription {
+  Transform to_world;
+  enum class FovAxis { kX, kY, kDiagonal, kSmaller, kLarger };
+  FovAxis fov_axis = FovAxis::kX;
+  float fov_degrees = 45;  // full angle along fov_axis
+  float near_clip = 1e-2f;
+  float far_clip = 1e4f;
+};
+
+struct MethodDescription {
+  std::string integrator = "path";
+  int max_depth = -1;  // path edges: 1 shows emitters only, 2 adds direct light; -1 is unlimited
+  int rr_depth = 5;    // first bounce at which Russian roulette may end a path
+  bool hide_emitters = false;
+};
+
+struct SceneDescription {
+  std::vector<MaterialDescription> materials;
+  std::vector<ShapeDescription> shapes;
+  std::vector<EmitterDescription> emitters;
+  CameraDescription camera;
+  FilmDescription film;
+  MethodDescription method;
+  int samples_per_pixel = 0;  // 0: the file does not say
+  std::vector<std::string> warnings;
+};
+
+}  // namespace fluxfarm

@@ -1,0 +1,71 @@
+#include "scene/scene.h"
+
+#include "materials/make_bsdf.h"
+#include "scene/make_shape.h"
+
+namespace fluxfarm {
+namespace {
+
+bool is_anisotropic(const std::vector<MaterialDescription>& materials, const MaterialDescription& material) {
+  const auto differs = [](const Roughness& r) { return r.alpha_u != r.alpha_v; };
+  if (const auto* conductor = std::get_if<RoughConductorDescription>(&material)) return differs(conductor->roughness);
+  if (const auto* dielectric = std::get_if<RoughDielectricDescription>(&material)) return differs(dielectric->roughness);
+  if (const auto* twosided = std::get_if<TwosidedDescription>(&material)) {
+    return is_anisotropic(materials, materials[twosided->front]) || is_anisotropic(materials, materials[twosided->back]);
+  }
+  return false;
+}
+
+}  // namespace
+
+Scene::Scene(const SceneDescription& description, int threads)
+    : film_(description.film),
+      method_(description.method),
+      pixel_filter_(description.film.filter),
+      camera_(description.camera, description.film.width, description.film.height),
+      bsdfs_(make_bsdfs(description.materials)),
+      accelerator_(std::make_unique<RayAccelerator>(threads)),
+      warnings_(description.warnings) {
+  census_.materials = bsdfs_.size();
+  surfaces_.reserve(description.shapes.size());
+  for (const ShapeDescription& shape : description.shapes) {
+    Surface surface;
+    surface.shape = add_shape(shape, shape.emitted_radiance.has_value(), *accelerator_);
+    surface.bsdf = bsdfs_[shape.material].get();
+    surface.anisotropic = is_anisotropic(description.materials, description.materials[shape.material]);
+    census_.anisotropic_materials |= surface.anisotropic;
+    census_.delta_materials |= !surface.bsdf->has_continuous_lobe() && !shape.emitted_radiance;
+    if (const auto* mesh = dynamic_cast<const TriangleMesh*>(surface.shape.get())) {
+      census_.triangles += mesh->triangles();
+      census_.shading_normals |= !mesh->data().normals.empty();
+    }
+    if (shape.emitted_radiance) {
+      area_emitters_.push_back(std::make_unique<AreaEmitter>(*surface.shape, *shape.emitted_radiance));
+      surface.emitter = area_emitters_.back().get();
+    }
+    surfaces_.push_back(std::move(surface));
+  }
+  accelerator_->build();
+
+  for (const EmitterDescription& emitter : description.emitters) {
+    if (const auto* point = std::get_if<PointEmitterDescription>(&emitter)) {
+      point_emitters_.push_back(std::make_unique<PointEmitter>(point->position, point->intensity));
+    } else {
+      environment_ = environment_.value_or(Rgb{}) + std::get<ConstantEmitterDescription>(emitter).radiance;
+    }
+  }
+  std::vector<const Emitter*> emitters;
+  for (const auto& emitter : area_emitters_) emitters.push_back(emitter.get());
+  for (const auto& emitter : point_emitters_) emitters.push_back(emitter.get());
+  emitter_choice_ = EmitterChoice(emitters);
+  std::size_t index = 0;
+  for (Surface& surface : surfaces_) {
+    if (surface.emitter != nullptr) surface.choice_probability = emitter_choice_.probability(index++);
+  }
+  census_.shapes = surfaces_.size();
+  census_.area_emitters = area_emitters_.size();
+  census_.point_emitters = point_emitters_.size();
+  census_.environment = environment_.has_value();
+}
+
+}  // namespace fluxfarm

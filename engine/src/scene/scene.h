@@ -1,0 +1,72 @@
+// The compiled scene: immutable, shared by all threads, everything an integrator asks of it.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "accel/ray_accelerator.h"
+#include "emitters/emitter.h"
+#include "emitters/emitter_choice.h"
+#include "materials/bsdf.h"
+#include "scene/camera.h"
+#include "scene/description.h"
+
+namespace fluxfarm {
+
+// What the scene contains, counted at load: the facts by which parts of the engine are built or left out.
+struct Census {
+  std::size_t shapes = 0, triangles = 0, area_emitters = 0, point_emitters = 0;
+  bool environment = false;
+  std::size_t materials = 0;
+  bool delta_materials = false;        // some material has only delta lobes
+  bool anisotropic_materials = false;  // tangent frames are needed
+  bool shading_normals = false;        // some mesh has normals of its own
+};
+
+class Scene {
+ public:
+  // One surface of the scene with all that belongs to it.
+  struct Surface {
+    std::unique_ptr<Shape> shape;
+    const Bsdf* bsdf = nullptr;
+    const AreaEmitter* emitter = nullptr;  // nullptr: does not emit
+    float choice_probability = 0;          // of its emitter in next-event estimation
+    bool anisotropic = false;
+  };
+
+  // Compiles a description whose film has the final size. `threads` build the ray accelerator; 0 takes all.
+  // Throws SceneError or ResourceError.
+  Scene(const SceneDescription& description, int threads);
+
+  const Surface& surface(std::uint32_t shape) const { return surfaces_[shape]; }
+  const RayAccelerator& accelerator() const { return *accelerator_; }
+  const EmitterChoice& emitters() const { return emitter_choice_; }
+  // Radiance of the constant environment; empty without one.
+  const std::optional<Rgb>& environment() const { return environment_; }
+  const Camera& camera() const { return camera_; }
+  const FilmDescription& film() const { return film_; }
+  const PixelFilter& pixel_filter() const { return pixel_filter_; }
+  const MethodDescription& method() const { return method_; }
+  const Census& census() const { return census_; }
+  const std::vector<std::string>& warnings() const { return warnings_; }
+
+ private:
+
+  FilmDescription film_;
+  MethodDescription method_;
+  PixelFilter pixel_filter_;
+  Camera camera_;
+  std::vector<std::unique_ptr<Bsdf>> bsdfs_;
+  std::vector<Surface> surfaces_;
+  std::vector<std::unique_ptr<AreaEmitter>> area_emitters_;
+  std::vector<std::unique_ptr<PointEmitter>> point_emitters_;
+  EmitterChoice emitter_choice_;
+  std::optional<Rgb> environment_;
+  std::unique_ptr<RayAccelerator> accelerator_;
+  Census census_;
+  std::vector<std::string> warnings_;
+};
+
+}  // namespace fluxfarm
