@@ -1,0 +1,62 @@
+// Rough metal: single scattering by microfacets that are mirrors with Fresnel's reflectance. One-sided: the back is black.
+// Loses the light that the microfacets would scatter twice or more: a white one is not white at high roughness.
+//
+// [Walter07] B. Walter et al., "Microfacet Models for Refraction through Rough Surfaces", EGSR 2007.
+// [Heitz14]  E. Heitz and E. d'Eon, "Importance Sampling Microfacet-Based BSDFs using the Distribution of Visible Normals", EGSR 2014.
+#include "materials/albedo_table.h"
+#include "materials/beckmann.h"
+#include "materials/bsdf_factories.h"
+#include "materials/conductor_reflectance.h"
+#include "materials/directions.h"
+#include "materials/ggx.h"
+
+namespace fluxfarm {
+namespace {
+
+template <class Distribution>
+class RoughConductor final : public Bsdf {
+ public:
+  explicit RoughConductor(const RoughConductorDescription& d)
+      : distribution_(d.roughness.alpha_u, d.roughness.alpha_v), reflectance_(d.conductor), albedo_(*this) {}
+
+  BsdfValue value(Vec3f wo, Vec3f wi) const override {
+    if (wo.z <= 0 || wi.z <= 0) return {};
+    const std::optional<Vec3f> m = half_vector(wo, wi, 1);
+    if (!m) return {};
+    const float d = distribution_.normal_density(*m);
+    if (!(d > 0)) return {};
+    // f = F D G1 G1 / (4 cos cos)                                                    [Walter07, section 4.2]
+    const float f = 0.25f * d * distribution_.masking_by_cosine(wo) * distribution_.masking_by_cosine(wi);
+    return {reflectance_(dot(wo, *m)) * f, 0.25f * d * distribution_.visible_by_cosine(wo)};
+  }
+
+  std::optional<BsdfSample> sample(Vec3f wo, float, Vec2f u) const override {
+    if (wo.z <= 0) return std::nullopt;
+    const Vec3f m = distribution_.sample_normal(wo, u);
+    const float cos_m = dot(wo, m);
+    const Vec3f wi = reflect(wo, m, cos_m);
+    if (cos_m <= 0 || wi.z <= 0) return std::nullopt;
+    const float visible = distribution_.visible_by_cosine(wo);
+    const float pdf = 0.25f * distribution_.normal_density(m) * visible;
+    if (!(pdf > 0)) return std::nullopt;
+    const float masking = distribution_.masking_by_cosine(wo) * distribution_.masking_by_cosine(wi) * wi.z / visible;
+    return BsdfSample{.wi = wi, .weight = reflectance_(cos_m) * masking, .pdf = pdf};
+  }
+
+  Rgb albedo(Vec3f wo) const override { return wo.z > 0 ? albedo_(wo.z) : Rgb{}; }
+  bool has_continuous_lobe() const override { return true; }
+
+ private:
+  Distribution distribution_;
+  ConductorReflectance reflectance_;
+  AlbedoTable albedo_;  // last: built by sampling the members above
+};
+
+}  // namespace
+
+std::unique_ptr<Bsdf> make_rough_conductor(const RoughConductorDescription& d) {
+  if (d.roughness.distribution == MicrofacetDistribution::kGgx) return std::make_unique<RoughConductor<Ggx>>(d);
+  return std::make_unique<RoughConductor<Beckmann>>(d);
+}
+
+}  // namespace fluxfarm
