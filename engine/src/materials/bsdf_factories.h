@@ -1,0 +1,22 @@
+// One function for each BSDF. The classes themselves live in the .cpp file of the same name; make_bsdf.h is the way in from outside.
+#pragma once
+
+#include <memory>
+
+#include "materials/bsdf.h"
+#include "materials/material_description.h"
+
+namespace fluxfarm {
+
+std::unique_ptr<Bsdf> make_diffuse(const DiffuseDescription&);
+std::unique_ptr<Bsdf> make_dielectric(const DielectricDescription&);
+std::unique_ptr<Bsdf> make_conductor(const ConductorDescription&);
+std::unique_ptr<Bsdf> make_rough_conductor(const RoughConductorDescription&);
+std::unique_ptr<Bsdf> make_rough_dielectric(const RoughDielectricDescription&);
+std::unique_ptr<Bsdf> make_plastic(const PlasticDescription&);
+std::unique_ptr<Bsdf> make_rough_plastic(const RoughPlasticDescription&);
+
+// Borrows both sides: they must outlive the result and must not transmit.
+std::unique_ptr<Bsdf> make_twosided(const Bsdf& front, const Bsdf& back);
+
+}  // namespace fluxfarm
