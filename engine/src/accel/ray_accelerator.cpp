@@ -115,4 +115,13 @@ bool RayAccelerator::occluded(const Ray& ray) const {
   return query.tfar < 0;
 }
 
+std::uint64_t RayAccelerator::replay(std::span<const RecordedRay> rays) const {
+  std::uint64_t hits = 0;
+  Hit hit;
+  for (const RecordedRay& recorded : rays) {
+    hits += recorded.occlusion ? occluded(recorded.ray) : intersect(recorded.ray, hit);
+  }
+  return hits;
+}
+
 }  // namespace fluxfarm

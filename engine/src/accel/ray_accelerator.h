@@ -5,7 +5,9 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <memory>
+#include <span>
 #include <string>
 
 #include "geometry/disk.h"
@@ -22,6 +24,12 @@ std::string ray_library_version();
 
 // Switches the calling thread to flush denormals to zero, as Embree asks of every thread that traces rays.
 void prepare_render_thread();
+
+// A ray that a benchmark wants to trace again.
+struct RecordedRay {
+  Ray ray;
+  bool occlusion = false;
+};
 
 class RayAccelerator {
  public:
@@ -43,6 +51,8 @@ class RayAccelerator {
   bool intersect(const Ray& ray, Hit& hit) const;
   // Whether anything lies in (t_min, t_max).
   bool occluded(const Ray& ray) const;
+  // Traces the rays one by one with nothing around it, and returns how many hit: what Embree alone can do, for benchmarks.
+  std::uint64_t replay(std::span<const RecordedRay> rays) const;
 
  private:
   struct Impl;

@@ -8,11 +8,6 @@
 
 namespace fluxfarm {
 
-struct RecordedRay {
-  Ray ray;
-  bool occlusion;
-};
-
 class RayQueries {
  public:
   explicit RayQueries(const RayAccelerator& accelerator) : accelerator_(accelerator) {}

@@ -1,6 +1,7 @@
 #include "film/film.h"
 
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <cstring>
 #include <fstream>
@@ -94,7 +95,7 @@ void Film::merge(const TileSums& tile) {
       p.samples = tile.samples.end;
     }
   }
-  non_finite_samples_ += tile.non_finite_samples;
+  std::atomic_ref(non_finite_samples_) += tile.non_finite_samples;
 }
 
 FilmSummary Film::summary() const {

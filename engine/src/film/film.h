@@ -47,6 +47,7 @@ class Film {
   void save(const std::filesystem::path& path) const;
 
   // Adds one tile's sums. The tile must lie in the crop and carry on where its pixels' samples end: Error otherwise.
+  // Threads may merge disjoint tiles at the same time.
   void merge(const TileSums& tile);
 
   FilmSummary summary() const;

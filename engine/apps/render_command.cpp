@@ -1,0 +1,147 @@
+// fluxfarm-engine render: scene to EXR in this process.
+#include <unistd.h>
+
+#include <atomic>
+#include <chrono>
+#include <csignal>
+#include <cstdio>
+#include <fstream>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "commands.h"
+#include "io/exr.h"
+#include "io/png.h"
+#include "scene_options.h"
+#include "support/build_info.h"
+#include "support/error.h"
+#include "worker/frame_renderer.h"
+#include "worker/plan.h"
+
+namespace fluxfarm {
+namespace {
+
+struct RenderOptions {
+  SceneOptions scene;
+  std::filesystem::path exr, png, report;
+  std::string integrator = "auto";
+  Goal goal;
+  int threads = 0, tile = 64;
+  std::uint64_t seed = 0;
+};
+
+constexpr std::uint32_t kDefaultSpp = 64;
+
+std::atomic<bool> interrupted{false};
+static_assert(std::atomic<bool>::is_always_lock_free, "set from a signal handler");
+void interrupt(int) { interrupted = true; }
+
+class Stopwatch {
+ public:
+  // Seconds since the last call, or since construction.
+  double lap() {
+    const auto now = std::chrono::steady_clock::now();
+    const double seconds = std::chrono::duration<double>(now - last_).count();
+    last_ = now;
+    return seconds;
+  }
+
+ private:
+  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
+};
+
+nlohmann::json or_null(const std::optional<double>& value) { return value ? nlohmann::json(*value) : nlohmann::json(); }
+
+void say_progress(const TimelinePoint& point) {
+  if (isatty(STDERR_FILENO) == 0) return;
+  std::fprintf(stderr, "\r%8.1f s  %6u spp  error %-10s", point.seconds, point.spp,
+               point.error ? std::to_string(*point.error).c_str() : "-");
+}
+
+void write_report(const std::filesystem::path& path, const nlohmann::json& report) {
+  std::ofstream out(path);
+  out << report.dump(2) << '\n';
+  out.flush();
+  if (!out) throw ResourceError(path.string() + ": cannot write the report");
+}
+
+void render(const RenderOptions& options) {
+  std::signal(SIGINT, interrupt);
+  Stopwatch watch;
+  const SceneDescription description = options.scene.read();
+  const double load = watch.lap();
+  const int threads = resolve_threads(options.threads);
+  const Scene scene(description, threads);
+  const double build = watch.lap();
+  const std::unique_ptr<Integrator> integrator = make_integrator(options.integrator, scene);
+  const double prepare = watch.lap();
+  for (const std::string& warning : scene.warnings()) std::fprintf(stderr, "warning: %s\n", warning.c_str());
+
+  const FilmDescription& film = scene.film();
+  FrameSettings settings{{film.crop_x, film.crop_y, film.crop_width, film.crop_height}, options.tile, threads, options.seed,
+                         options.goal};
+  if (!settings.goal.spp && !settings.goal.seconds && !settings.goal.rel_error) {
+    const int asked = description.samples_per_pixel;
+    settings.goal.spp = asked > 0 ? static_cast<std::uint32_t>(asked) : kDefaultSpp;
+  }
+  const FrameResult result = render_frame(scene, *integrator, settings, interrupted, say_progress);
+  if (isatty(STDERR_FILENO) != 0) std::fprintf(stderr, "\n");
+  watch.lap();
+
+  const Image image = result.film.image(settings.crop, {"", "", "path", engine_build(), options.seed});
+  write_exr(options.exr, image);
+  if (!options.png.empty()) write_png(options.png, image);
+  const double write = watch.lap();
+
+  std::vector<std::string> warnings = scene.warnings();
+  if (result.summary.non_finite_samples > 0) {
+    warnings.push_back(std::to_string(result.summary.non_finite_samples) + " samples were not finite and count as zero");
+    std::fprintf(stderr, "warning: %s\n", warnings.back().c_str());
+  }
+  if (options.report.empty()) return;
+  nlohmann::json timeline = nlohmann::json::array();
+  for (const TimelinePoint& point : result.timeline) {
+    timeline.push_back({{"seconds", point.seconds}, {"spp", point.spp}, {"error", or_null(point.error)}});
+  }
+  write_report(options.report,
+               {{"engine", engine_build()},
+                {"integrator", "path"},
+                {"size", {film.width, film.height}},
+                {"threads", threads},
+                {"seed", options.seed},
+                {"seconds", {{"load", load}, {"build", build}, {"prepare", prepare}, {"render", result.seconds}, {"write", write}}},
+                {"spp", result.summary.max_samples},
+                {"samples", static_cast<std::uint64_t>(result.summary.max_samples) * static_cast<std::uint64_t>(settings.crop.pixels())},
+                {"rays", result.rays},
+                {"rays_per_second", static_cast<double>(result.rays) / result.seconds},
+                {"mean", result.summary.mean},
+                // Path tracing has no bias of its own; energy that it never sampled is not audited yet, so that is left open.
+                {"error", {{"noise", or_null(result.summary.error_noise)}, {"bias", 0.0}, {"unseen", nullptr}}},
+                {"timeline", timeline},
+                {"plan", nlohmann::json::parse(plan_json(scene))},
+                {"warnings", warnings}});
+}
+
+}  // namespace
+
+void add_render_command(CLI::App& app) {
+  CLI::App* command = app.add_subcommand("render", "Render a scene to an EXR file");
+  const auto options = std::make_shared<RenderOptions>();
+  options->scene.add_to(*command, true);
+  command->add_option("-o,--output", options->exr, "EXR file to write")->required();
+  command->add_option("--png", options->png, "Also write a tone-mapped PNG");
+  command->add_option("--report", options->report, "Write figures of the run as JSON");
+  command->add_option("--integrator", options->integrator, "Method: auto or path")->capture_default_str();
+  auto* spp = command->add_option("--spp", options->goal.spp, "Samples per pixel")->check(CLI::Range(1u, 1u << 24));
+  auto* seconds = command->add_option("--seconds", options->goal.seconds, "Time budget in seconds")->check(CLI::PositiveNumber);
+  auto* error = command->add_option("--rel-error", options->goal.rel_error, "Stop at this estimated relative error, sqrt(relMSE)")
+                    ->check(CLI::PositiveNumber);
+  spp->excludes(seconds)->excludes(error);
+  seconds->excludes(error);
+  command->add_option("--threads", options->threads, "Render threads; default: all cores")->check(CLI::Range(1, 1024));
+  command->add_option("--tile", options->tile, "Tile side in pixels; does not change the result")->check(CLI::Range(1, 4096))->capture_default_str();
+  command->add_option("--seed", options->seed, "Seed of the random numbers")->capture_default_str();
+  command->callback([options] { render(*options); });
+}
+
+}  // namespace fluxfarm

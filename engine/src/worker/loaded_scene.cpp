@@ -1,0 +1,51 @@
+#include "worker/loaded_scene.h"
+
+#include <chrono>
+
+#include "io/scene_reader.h"
+#include "worker/plan.h"
+
+namespace fluxfarm {
+
+std::shared_ptr<const LoadedScene> load_scene(const LoadSceneRequest& request, int threads) {
+  const auto start = std::chrono::steady_clock::now();
+  SceneDescription description = read_scene(request.folder, request.entry, {});
+  FilmDescription& film = description.film;
+  if (request.key.width > 0 && request.key.height > 0 && (request.key.width != film.width || request.key.height != film.height)) {
+    // Another size makes another frame: the file's crop has no meaning in it.
+    film = {request.key.width, request.key.height, 0, 0, 0, 0, film.filter};
+  }
+  auto loaded = std::make_shared<LoadedScene>(LoadedScene{{}, Scene(description, threads), nullptr});
+  loaded->integrator = make_integrator(request.key.integrator, loaded->scene);
+
+  const PixelRect full{0, 0, film.width, film.height};
+  SceneLoadedReply& info = loaded->info;
+  info.width = film.width;
+  info.height = film.height;
+  info.scene_spp = description.samples_per_pixel;
+  info.crop = film.crop_width > 0 ? PixelRect{film.crop_x, film.crop_y, film.crop_width, film.crop_height} : full;
+  info.integrator = "path";
+  info.warnings = loaded->scene.warnings();
+  info.plan_json = plan_json(loaded->scene);
+  info.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return loaded;
+}
+
+std::shared_ptr<const LoadedScene> SceneStore::find(const SceneKey& key) {
+  const std::lock_guard lock(mutex_);
+  for (auto entry = entries_.begin(); entry != entries_.end(); ++entry) {
+    if (entry->key != key) continue;
+    entries_.splice(entries_.begin(), entries_, entry);
+    return entries_.front().scene;
+  }
+  return nullptr;
+}
+
+void SceneStore::keep(const SceneKey& key, std::shared_ptr<const LoadedScene> scene) {
+  const std::lock_guard lock(mutex_);
+  entries_.remove_if([&](const Entry& entry) { return entry.key == key; });
+  entries_.push_front({key, std::move(scene)});
+  if (entries_.size() > capacity_) entries_.pop_back();
+}
+
+}  // namespace fluxfarm

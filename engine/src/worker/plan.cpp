@@ -1,0 +1,37 @@
+#include "worker/plan.h"
+
+#include <nlohmann/json.hpp>
+
+namespace fluxfarm {
+namespace {
+
+nlohmann::json part(const char* name, bool on, const std::string& reason) { return {{"part", name}, {"on", on}, {"reason", reason}}; }
+
+std::string count(std::size_t number, const char* noun) { return std::to_string(number) + " " + noun + (number == 1 ? "" : "s"); }
+
+}  // namespace
+
+std::string plan_json(const Scene& scene) {
+  const Census& census = scene.census();
+  const std::size_t emitters = census.area_emitters + census.point_emitters;
+  const nlohmann::json plan = {
+      {"integrator", "path"},
+      {"census",
+       {{"shapes", census.shapes},
+        {"triangles", census.triangles},
+        {"materials", census.materials},
+        {"area_emitters", census.area_emitters},
+        {"point_emitters", census.point_emitters},
+        {"environment", census.environment},
+        {"delta_materials", census.delta_materials}}},
+      {"parts",
+       {part("next-event estimation", emitters > 0, count(emitters, "emitter") + " with a place"),
+        part("emitter choice", emitters > 1, count(emitters, "emitter") + " to choose from"),
+        part("environment", census.environment, census.environment ? "a constant environment" : "no environment"),
+        part("tangent frames", census.anisotropic_materials,
+             census.anisotropic_materials ? "a material with two roughnesses" : "no anisotropic material"),
+        part("shading normals", census.shading_normals, census.shading_normals ? "a mesh with normals" : "all surfaces flat or exact")}}};
+  return plan.dump();
+}
+
+}  // namespace fluxfarm

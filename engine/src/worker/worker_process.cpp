@@ -1,0 +1,217 @@
+#include "worker/worker_process.h"
+
+#include <unistd.h>
+
+#include <atomic>
+#include <chrono>
+#include <cstdio>
+#include <map>
+#include <memory>
+#include <new>
+#include <thread>
+
+#include "support/build_info.h"
+#include "support/error.h"
+#include "worker/codec.h"
+#include "worker/frame_socket.h"
+#include "worker/job_queue.h"
+#include "worker/loaded_scene.h"
+#include "worker/merge.h"
+#include "worker/tile_runner.h"
+
+namespace fluxfarm {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr std::size_t kKeptScenes = 8;
+constexpr std::chrono::milliseconds kProgressInterval{100};
+
+FailureReply failure_of(const std::exception_ptr& error) {
+  try {
+    std::rethrow_exception(error);
+  } catch (const CancelledError& e) {
+    return {FailureKind::kCancelled, e.what()};
+  } catch (const SceneError& e) {
+    return {FailureKind::kScene, e.what()};
+  } catch (const SettingError& e) {
+    return {FailureKind::kScene, e.what()};
+  } catch (const ResourceError& e) {
+    return {FailureKind::kResource, e.what()};
+  } catch (const std::bad_alloc&) {
+    return {FailureKind::kResource, "out of memory"};
+  } catch (const std::exception& e) {
+    return {FailureKind::kInternal, e.what()};
+  }
+}
+
+// A request that is being carried out.
+struct Running {
+  std::atomic<bool> cancelled{false};
+  // RenderTiles only:
+  std::atomic<std::size_t> tiles_left{0};
+  std::atomic<bool> failed{false};
+  std::atomic<std::uint64_t> samples{0};
+  std::atomic<Clock::rep> last_progress{Clock::now().time_since_epoch().count()};
+};
+
+class Worker {
+ public:
+  Worker(int fd, int threads) : socket_(fd), threads_(threads), scenes_(kKeptScenes) {}
+
+  int run() {
+    reply(0, HelloReply{engine_build(), threads_});
+    for (int i = 0; i < threads_; ++i) {
+      std::thread([this] {
+        prepare_render_thread();
+        for (;;) jobs_.pop()();
+      }).detach();  // the process ends with the socket, not with its threads
+    }
+    try {
+      while (const std::optional<std::string> frame = socket_.read()) handle(decode_request(*frame));
+    } catch (const Error& error) {
+      std::fprintf(stderr, "fluxfarm-engine worker: %s\n", error.what());
+      return 1;
+    }
+    return 0;
+  }
+
+ private:
+  void reply(std::uint64_t id, const ReplyBody& body) { socket_.write(encode_reply(id, body)); }
+
+  void handle(Request request) {
+    const std::uint64_t id = request.id;
+    std::visit([&](auto& body) { handle(id, std::move(body)); }, request.body);
+  }
+
+  void handle(std::uint64_t id, UnknownRequest) {
+    reply(id, FailureReply{FailureKind::kInternal, "request not known to protocol version " + std::to_string(kProtocolVersion)});
+  }
+  void handle(std::uint64_t id, PingRequest) { reply(id, PongReply{}); }
+  void handle(std::uint64_t, CancelRequest request) {
+    const std::lock_guard lock(running_mutex_);
+    if (const auto found = running_.find(request.target); found != running_.end()) found->second->cancelled = true;
+  }
+
+  void handle(std::uint64_t id, LoadSceneRequest request) {
+    start(id, [this, request = std::move(request)](Running&) -> ReplyBody {
+      std::shared_ptr<const LoadedScene> loaded = scenes_.find(request.key);
+      if (!loaded) {
+        loaded = load_scene(request, threads_);
+        scenes_.keep(request.key, loaded);
+      }
+      return loaded->info;
+    });
+  }
+  void handle(std::uint64_t id, MergePassRequest request) {
+    start(id, [request = std::move(request)](Running&) -> ReplyBody { return PassMergedReply{merge_pass(request)}; });
+  }
+  void handle(std::uint64_t id, WriteTileRequest request) {
+    start(id, [request = std::move(request)](Running&) -> ReplyBody {
+      write_tile(request);
+      return TileWrittenReply{};
+    });
+  }
+
+  // One job that answers with one reply.
+  void start(std::uint64_t id, std::function<ReplyBody(Running&)> work) {
+    const std::shared_ptr<Running> running = begin(id);
+    jobs_.push(
+        [this, id, running, work = std::move(work)] {
+          ReplyBody body;
+          try {
+            if (running->cancelled) throw CancelledError();
+            body = work(*running);
+          } catch (...) {
+            body = failure_of(std::current_exception());
+          }
+          end(id);
+          reply(id, body);
+        },
+        true);
+  }
+
+  void handle(std::uint64_t id, RenderTilesRequest body) {
+    const auto request = std::make_shared<const RenderTilesRequest>(std::move(body));
+    const std::shared_ptr<const LoadedScene> loaded = scenes_.find(request->key);
+    if (!loaded) {
+      reply(id, FailureReply{FailureKind::kResource, "scene " + request->key.digest + " is not loaded here, LoadScene first"});
+      return;
+    }
+    if (request->tiles.empty()) {
+      reply(id, TilesDoneReply{});
+      return;
+    }
+    const std::shared_ptr<Running> running = begin(id);
+    running->tiles_left = request->tiles.size();
+    for (std::uint32_t tile = 0; tile < request->tiles.size(); ++tile) {
+      jobs_.push([this, id, request, loaded, running, tile] { render(id, *request, *loaded, *running, tile); }, false);
+    }
+  }
+
+  void render(std::uint64_t id, const RenderTilesRequest& request, const LoadedScene& loaded, Running& running, std::uint32_t tile) {
+    try {
+      if (running.cancelled) throw CancelledError();
+      const Clock::time_point start = Clock::now();
+      RayQueries queries(loaded.scene.accelerator());
+      const TileSums sums =
+          render_tile(loaded.scene, *loaded.integrator, {request.tiles[tile], request.samples, request.seed}, queries,
+                      running.cancelled, [&](std::uint64_t samples) { tell_progress(id, running, samples); });
+      const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
+      if (!running.cancelled) {
+        reply(id, TileDoneReply{tile, encode_tile_sums(sums), seconds, queries.rays(), sums.non_finite_samples});
+      }
+    } catch (...) {
+      // The first failure answers the request and ends its other tiles.
+      const FailureReply failure = failure_of(std::current_exception());
+      if (failure.kind != FailureKind::kCancelled && !running.failed.exchange(true)) {
+        running.cancelled = true;
+        reply(id, failure);
+      }
+    }
+    if (--running.tiles_left > 0) return;
+    end(id);
+    if (running.failed) return;
+    if (running.cancelled) {
+      reply(id, FailureReply{FailureKind::kCancelled, "cancelled"});
+    } else {
+      reply(id, TilesDoneReply{});
+    }
+  }
+
+  void tell_progress(std::uint64_t id, Running& running, std::uint64_t samples) {
+    const std::uint64_t total = running.samples += samples;
+    const Clock::rep now = Clock::now().time_since_epoch().count();
+    Clock::rep last = running.last_progress;
+    if (Clock::duration(now - last) < kProgressInterval) return;
+    if (running.last_progress.compare_exchange_strong(last, now)) reply(id, ProgressReply{total});
+  }
+
+  std::shared_ptr<Running> begin(std::uint64_t id) {
+    const std::lock_guard lock(running_mutex_);
+    return running_[id] = std::make_shared<Running>();
+  }
+  void end(std::uint64_t id) {
+    const std::lock_guard lock(running_mutex_);
+    running_.erase(id);
+  }
+
+  FrameSocket socket_;
+  int threads_;
+  SceneStore scenes_;
+  JobQueue jobs_;
+  std::mutex running_mutex_;
+  std::map<std::uint64_t, std::shared_ptr<Running>> running_;
+};
+
+}  // namespace
+
+int run_worker(int fd, int threads) {
+  // Never destroyed: render threads use it until the process ends.
+  auto* worker = new Worker(fd, threads);
+  const int status = worker->run();
+  std::fflush(nullptr);
+  _exit(status);
+}
+
+}  // namespace fluxfarm

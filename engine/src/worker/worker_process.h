@@ -1,0 +1,12 @@
+// The engine as a worker: takes requests from an inherited socket, carries them out on render threads, answers.
+//
+// One thread reads, so that a cancel is seen while others render; render threads take tiles in the order of their requests, and
+// merges before tiles, so that what is finished is shown first. End of file on the socket ends the process.
+#pragma once
+
+namespace fluxfarm {
+
+// Returns the exit status of the process: 0 at end of file, 1 when the peer broke the protocol.
+int run_worker(int fd, int threads);
+
+}  // namespace fluxfarm
