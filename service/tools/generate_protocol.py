@@ -19,7 +19,7 @@ def main() -> int:
     module = OUTPUT / "engine_pb2.py"
     if module.exists() and module.stat().st_mtime > proto.stat().st_mtime:
         return 0
-    from grpc_tools import protoc  # noqa: PLC0415  (slow to load, and not needed when nothing changed)
+    from grpc_tools import protoc
 
     OUTPUT.mkdir(parents=True, exist_ok=True)
     (OUTPUT / "__init__.py").write_text('"""Generated from proto/fluxfarm/v1; imported by the codec only."""\n')

@@ -1,0 +1,1 @@
+"""How the ports are met: SQLite, files and local engine processes."""

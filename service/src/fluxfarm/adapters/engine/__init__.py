@@ -1,0 +1,1 @@
+"""Local engine processes and what is said to them."""

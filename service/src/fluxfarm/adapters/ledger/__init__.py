@@ -1,0 +1,5 @@
+"""The ledger in SQLite."""
+
+from fluxfarm.adapters.ledger.ledger import SqliteLedger
+
+__all__ = ["SqliteLedger"]

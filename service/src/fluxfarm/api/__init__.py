@@ -1,0 +1,1 @@
+"""The HTTP face of the service: routes, their documents and their problem replies."""

@@ -1,0 +1,131 @@
+"""Wires the parts together: settings in, a running service out."""
+
+import logging
+import socket
+from collections.abc import Callable
+from contextlib import AsyncExitStack
+from dataclasses import asdict
+
+import uvicorn
+from fastapi import FastAPI
+
+import fluxfarm
+from fluxfarm.adapters import data_folder
+from fluxfarm.adapters.blobs import FileBlobStore
+from fluxfarm.adapters.engine.local_pool import LocalPool
+from fluxfarm.adapters.ledger import SqliteLedger
+from fluxfarm.adapters.ledger.database import sqlite_warning
+from fluxfarm.api import assets, images, jobs, problems, report, streams, system
+from fluxfarm.api.body_guard import BodyGuard
+from fluxfarm.api.deps import Services
+from fluxfarm.errors import StartError
+from fluxfarm.orchestrator import Orchestrator
+from fluxfarm.orchestrator.orchestrator import OrchestratorSettings
+from fluxfarm.settings import Settings, engine_program, scenes_folder
+
+log = logging.getLogger(__name__)
+
+DESCRIPTION = """
+Give Fluxfarm a scene and an error target, a time budget or a sample count; it renders in tiles and passes and returns
+OpenEXR images with their error. Upload the files of a scene by digest, submit a job, watch its events, fetch the
+newest image at any time. Errors are RFC 9457 problem details.
+"""
+GRACE_S = 2
+
+
+def create_app() -> FastAPI:
+    """The routes; `app.state.services` has to be set before the first request."""
+    app = FastAPI(title="Fluxfarm", version=fluxfarm.__version__, description=DESCRIPTION)
+    app.add_middleware(BodyGuard)
+    problems.install(app)
+    for room in (assets, jobs, streams, images, report, system):
+        app.include_router(room.router)
+    return app
+
+
+async def start_services(settings: Settings, stack: AsyncExitStack) -> Services:
+    """Open the data folder, start the engine processes, resume unfinished jobs; `stack` closes all of it.
+
+    Raises StartError."""
+    program = engine_program(settings)
+    stack.enter_context(data_folder.hold(settings.data))
+    ledger = SqliteLedger(settings.data / "ledger.sqlite3", settings.journal)
+    stack.callback(ledger.close)
+    blobs = FileBlobStore(settings.data, settings.max_asset_bytes)
+    stack.callback(blobs.close)
+    kept = {sha256 for record in await ledger.jobs() for sha256 in record.request.bundle.files.values()}
+    swept = data_folder.sweep(settings.data, await ledger.files(), kept, settings.keep_assets_hours * 3600)
+    pool = LocalPool(program, settings.workers, settings.threads_per_worker, settings.stall_seconds)
+    limits = OrchestratorSettings(settings.tile_size, settings.lease_seconds, settings.max_pixels)
+    orchestrator = Orchestrator(ledger, blobs, pool, limits)
+    stack.push_async_callback(orchestrator.close)
+    await orchestrator.start()
+    warning = sqlite_warning()
+    log.info("service started", extra={"data": str(settings.data), "swept_files": swept, "sqlite_warning": warning})
+    return Services(
+        orchestrator=orchestrator,
+        ledger=ledger,
+        blobs=blobs,
+        pool=pool,
+        scenes=scenes_folder(settings),
+        data=settings.data,
+        settings={name: _plain(value) for name, value in asdict(settings).items()},
+        sqlite_warning=warning,
+        max_pixels=settings.max_pixels,
+        max_asset_bytes=settings.max_asset_bytes,
+    )
+
+
+class Server(uvicorn.Server):
+    """An HTTP server that lets open streams end as soon as it is asked to stop."""
+
+    def __init__(self, app: FastAPI, settings: Settings) -> None:
+        self._app = app
+        super().__init__(
+            uvicorn.Config(
+                app,
+                host=settings.host,
+                port=settings.port,
+                log_config=None,
+                access_log=False,
+                timeout_graceful_shutdown=GRACE_S,
+                http="h11",
+                ws="none",
+                loop="asyncio",
+                lifespan="off",
+            )
+        )
+
+    async def shutdown(self, sockets: list[socket.socket] | None = None) -> None:
+        """Wake the readers of streams, then close as usual."""
+        self._app.state.services.orchestrator.watch.close()
+        await super().shutdown(sockets)
+
+
+async def serve(settings: Settings, listening: socket.socket, ready: Callable[[Server], None]) -> None:
+    """Run the service on a bound socket until the server given to `ready` is told to stop; raises StartError."""
+    async with AsyncExitStack() as stack:
+        app = create_app()
+        app.state.services = await start_services(settings, stack)
+        server = Server(app, settings)
+        ready(server)
+        await server.serve(sockets=[listening])
+
+
+def bind(settings: Settings) -> socket.socket:
+    """A socket on the service's address; raises StartError if that is taken."""
+    listening = socket.socket(socket.AF_INET6 if ":" in settings.host else socket.AF_INET)
+    listening.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+    try:
+        listening.bind((settings.host, settings.port))
+    except OSError as error:
+        listening.close()
+        raise StartError(
+            f"FLUXFARM_HOST, FLUXFARM_PORT = {settings.host}:{settings.port}: cannot listen there ({error.strerror}); "
+            "another service may run already"
+        ) from None
+    return listening
+
+
+def _plain(value: object) -> str | int | float:
+    return value if isinstance(value, int | float) else str(value)

@@ -1,0 +1,5 @@
+"""The `fluxfarm` command."""
+
+
+def main() -> None:
+    """Entry point."""

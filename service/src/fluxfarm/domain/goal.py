@@ -1,0 +1,112 @@
+"""When a job has enough samples: by count, by time or by error.
+
+A sample goal fixes all passes in advance. The other two decide at pass barriers, from what the finished passes
+measured: a time goal from the clock, an error goal from the merged sums alone, so that the same job always stops at
+the same sample.
+"""
+
+from dataclasses import dataclass
+
+from fluxfarm.domain.schedule import SampleRange, next_range, pass_samples
+
+DEFAULT_SPP = 64
+# The spread of the replicates says little before each of the eight has two samples.
+LEAST_SPP_FOR_ERROR = 16
+# An error goal that is never reached has to end somewhere.
+ERROR_GOAL_CEILING_SPP = 65_536
+# A time goal stops when less than this share of the next sample would fit.
+LEAST_FITTING_SHARE = 0.5
+
+
+@dataclass(frozen=True, slots=True)
+class Goal:
+    """At most one of the three is set; none means the scene's own sample count, else DEFAULT_SPP."""
+
+    rel_error: float | None = None
+    spp: int | None = None
+    seconds: float | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Limits:
+    """Bounds that end a job early, with a warning when its goal was not reached. `seconds` count from RUNNING on."""
+
+    spp: int | None = None
+    seconds: float | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Measured:
+    """What is known at a pass barrier."""
+
+    passes: int
+    spp: int
+    running_s: float
+    error_noise: float | None
+
+
+@dataclass(frozen=True, slots=True)
+class Stop:
+    """The job has its samples. `warning` tells the owner why the goal was not reached, or is None when it was."""
+
+    warning: str | None = None
+
+
+def settled(goal: Goal, scene_spp: int) -> Goal:
+    """`goal` with an absent goal replaced by the scene's own sample count (0: it has none) or the default."""
+    if goal.rel_error is None and goal.spp is None and goal.seconds is None:
+        return Goal(spp=scene_spp or DEFAULT_SPP)
+    return goal
+
+
+def has_barriers(goal: Goal, limits: Limits) -> bool:
+    """Whether each pass has to be merged before the next one is chosen."""
+    return goal.spp is None or limits.seconds is not None
+
+
+def ceiling_spp(goal: Goal, limits: Limits) -> int | None:
+    """Most samples per pixel that the job can take; None when only time bounds it."""
+    if goal.spp is not None:
+        return min(goal.spp, limits.spp or goal.spp)
+    if goal.rel_error is not None:
+        return limits.spp or ERROR_GOAL_CEILING_SPP
+    return limits.spp
+
+
+def next_pass(goal: Goal, limits: Limits, measured: Measured) -> SampleRange | Stop:
+    """The samples of the next pass, or Stop. `goal` is settled."""
+    if (
+        goal.rel_error is not None
+        and measured.error_noise is not None
+        and measured.spp >= LEAST_SPP_FOR_ERROR
+        and measured.error_noise <= goal.rel_error
+    ):
+        return Stop()
+    ceiling = ceiling_spp(goal, limits)
+    if ceiling is not None and measured.spp >= ceiling:
+        return Stop(_unreached(goal, measured))
+    samples = next_range(measured.passes, measured.spp, ceiling or measured.spp + pass_samples(measured.passes))
+    assert samples is not None
+    seconds = min((s for s in (goal.seconds, limits.seconds) if s is not None), default=None)
+    if seconds is None or measured.spp == 0:
+        return samples
+    fitting = (seconds - measured.running_s) * measured.spp / max(measured.running_s, 1e-6)
+    if fitting < LEAST_FITTING_SHARE:
+        return Stop(_unreached(goal, measured))
+    return SampleRange(samples.begin, samples.begin + max(1, min(samples.count, int(fitting))))
+
+
+def _unreached(goal: Goal, measured: Measured) -> str | None:
+    """Why stopping now misses the goal, or None if it does not."""
+    if goal.rel_error is not None:
+        error = "unknown" if measured.error_noise is None else f"{measured.error_noise:.4g}"
+        return (
+            f"goal not reached: relative error is {error} after {measured.spp} samples per pixel and "
+            f"{measured.running_s:.1f} s, expected at most {goal.rel_error:g}; raise the limits"
+        )
+    if goal.spp is not None and measured.spp < goal.spp:
+        return (
+            f"goal not reached: {measured.spp} samples per pixel after {measured.running_s:.1f} s, "
+            f"expected {goal.spp}; raise the limits"
+        )
+    return None

@@ -1,0 +1,470 @@
+"""The one task that owns the state of unfinished jobs.
+
+Everything that can change a job - a command of its owner, an outcome of an engine process, a committed batch - is put
+into one inbox and handled to its end before the next. The ledger is changed first, memory after it.
+"""
+
+import asyncio
+import logging
+import time
+import uuid
+from collections.abc import Awaitable, Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TypeVar
+
+from fluxfarm.domain.job import TERMINAL_STATES, JobState
+from fluxfarm.domain.progress import Progress, eta_seconds
+from fluxfarm.domain.scene import check_bundle
+from fluxfarm.domain.schedule import pass_count
+from fluxfarm.domain.tiles import PixelRect, TileGrid
+from fluxfarm.errors import AssetsMissing, EngineTrouble, NotYetThere, StaleLease, TileOutsideFrame
+from fluxfarm.orchestrator.committer import Batch, Committer
+from fluxfarm.orchestrator.dispatch import Dispatcher, scene_ref
+from fluxfarm.orchestrator.publisher import publish
+from fluxfarm.orchestrator.run import JobRun
+from fluxfarm.orchestrator.tallies import Tallies
+from fluxfarm.orchestrator.watch import Watch
+from fluxfarm.ports import (
+    BlobStore,
+    FailureKind,
+    ImageInfo,
+    JobRecord,
+    JobRequest,
+    Lease,
+    LeaseFailed,
+    LeaseLost,
+    Ledger,
+    Merged,
+    MergeLease,
+    Outcome,
+    Prepared,
+    PrepareLease,
+    RenderLease,
+    Revision,
+    SamplesTaken,
+    TileCommit,
+    TileRendered,
+    TilesFinished,
+    WorkerPool,
+    WriteTileLease,
+)
+
+T = TypeVar("T")
+log = logging.getLogger(__name__)
+
+# A scene that ended this many engine processes is at fault itself.
+MOST_CRASHES = 3
+MOST_RESOURCE_FAILURES = 3
+TILE_IMAGE_TIMEOUT_S = 30.0
+# Under load the inbox is never empty, and the engine processes must not wait for that.
+MESSAGES_PER_DISPATCH = 32
+
+
+@dataclass(frozen=True, slots=True)
+class OrchestratorSettings:
+    """`tile_size` in pixels; `lease_s` is how long a lease should take; frames beyond `max_pixels` are refused."""
+
+    tile_size: int = 64
+    lease_s: float = 1.0
+    max_pixels: int = 1 << 27
+
+
+class Orchestrator:
+    """Start it with `start`, then give it commands from the same event loop."""
+
+    def __init__(self, ledger: Ledger, blobs: BlobStore, pool: WorkerPool, settings: OrchestratorSettings) -> None:
+        self._ledger = ledger
+        self._blobs = blobs
+        self._pool = pool
+        self._settings = settings
+        self._runs: dict[str, JobRun] = {}
+        self._inbox: asyncio.Queue[Callable[[], Awaitable[None]]] = asyncio.Queue()
+        self._committer = Committer(ledger, blobs, self._report_batch)
+        self._dispatcher = Dispatcher(ledger, blobs, pool, self._committer, settings.lease_s)
+        self._tasks: set[asyncio.Task[None]] = set()
+        self.watch = Watch()
+        self.tallies = Tallies()
+
+    # ---- life ----
+
+    async def start(self) -> None:
+        """Resume every unfinished job and begin to work."""
+        self._dispatcher.next_fence = await self._ledger.highest_fence() + 1
+        unfinished = [s for s in JobState if s not in TERMINAL_STATES and s is not JobState.PAUSED]
+        for record in reversed(await self._ledger.jobs(unfinished)):
+            await self._adopt(record)
+        await self._pool.start()
+        for work in (self._handle_inbox(), self._hear_outcomes(), self._committer.run()):
+            self._background(work)
+
+    async def close(self) -> None:
+        """Stop working; unfinished jobs go on at the next start."""
+        self.watch.close()
+        await self._pool.close()
+        for task in self._tasks:
+            task.cancel()
+        await asyncio.gather(*self._tasks, return_exceptions=True)
+
+    # ---- commands ----
+
+    async def create(self, request: JobRequest, key: str | None, body_sha256: str) -> tuple[str, bool]:
+        """Accept a job; returns its id and whether it is new. When this returns, the job survives everything.
+
+        Raises BadBundle, AssetsMissing or IdempotencyConflict."""
+        check_bundle(request.bundle)
+        missing = set(self._blobs.missing_assets(list(request.bundle.files.values())))
+        if missing:
+            raise AssetsMissing({path: sha for path, sha in request.bundle.files.items() if sha in missing})
+        wanted_id = str(uuid.uuid4())
+        job_id = await self._ledger.add_job(wanted_id, request, key, body_sha256)
+        if job_id == wanted_id:
+            await self._ask(lambda: self._begin(job_id))
+        return job_id, job_id == wanted_id
+
+    async def cancel(self, job_id: str) -> None:
+        """Give a job up; when this returns, no tile of it is committed any more. Again: no effect."""
+        await self._ask(lambda: self._halt(job_id, JobState.CANCELLED))
+
+    async def pause(self, job_id: str) -> None:
+        """Stop a job for now. Again on a paused job: no effect."""
+        await self._ask(lambda: self._halt(job_id, JobState.PAUSED))
+
+    async def resume(self, job_id: str) -> None:
+        """Let a paused job go on. On a job that is not paused: IllegalTransition."""
+        await self._ask(lambda: self._resume(job_id))
+
+    async def delete(self, job_id: str) -> None:
+        """Remove a job with all of its files, cancelling it first if it is unfinished."""
+        await self._ask(lambda: self._delete(job_id))
+
+    async def tile_image(self, job_id: str, column: int, row: int) -> Path:
+        """Have one tile written as an image of its own; the caller removes the file.
+
+        Raises NotYetThere, TileOutsideFrame or EngineTrouble."""
+        for attempt in (1, 2):
+            lease = await self._tile_lease(job_id, column, row)
+            try:
+                await asyncio.wait_for(self._dispatcher.errand(lease, self._wake), TILE_IMAGE_TIMEOUT_S)
+                return lease.exr_out
+            except TimeoutError:
+                raise EngineTrouble(
+                    f"tile {column}-{row}: no engine process wrote it in {TILE_IMAGE_TIMEOUT_S:g} s"
+                ) from None
+            except EngineTrouble:  # its film may have been replaced meanwhile: look again, once
+                if attempt == 2:
+                    raise
+        raise AssertionError("unreachable")
+
+    # ---- questions ----
+
+    def progress(self, record: JobRecord) -> Progress:
+        """How far a job is, including samples that no committed tile contains yet."""
+        run = self._runs.get(record.id)
+        goal = record.request.goal if run is None else run.goal
+        if record.grid is None or record.facts is None:
+            return Progress(0, 0, 0, 0, None, None)
+        samples = record.samples_done + (0 if run is None else run.samples_in_flight())
+        running_s = record.running_s if run is None else run.running_s(time.monotonic())
+        error = None if record.newest is None else record.newest.error_noise
+        ceiling = None if run is None else run.ceiling
+        passes = record.passes_opened
+        if goal.spp is not None and record.state not in TERMINAL_STATES:
+            passes = max(passes, pass_count(ceiling or goal.spp))
+        eta = None
+        if record.state in (JobState.RUNNING, JobState.FINALIZING):
+            eta = eta_seconds(goal, samples / record.grid.crop.area, running_s, error, ceiling)
+        return Progress(record.tiles_done, record.grid.count * passes, samples, record.passes_opened, error, eta)
+
+    def running_s(self, record: JobRecord) -> float:
+        """Seconds that a job has spent in RUNNING, up to now."""
+        run = self._runs.get(record.id)
+        return record.running_s if run is None else run.running_s(time.monotonic())
+
+    # ---- the inbox ----
+
+    async def _ask(self, work: Callable[[], Awaitable[T]]) -> T:
+        """Have `work` done by the inbox's task and wait for its result."""
+        answer: asyncio.Future[T] = asyncio.get_running_loop().create_future()
+
+        async def asked() -> None:
+            try:
+                result = await work()
+            except Exception as error:
+                if not answer.done():
+                    answer.set_exception(error)
+            else:
+                if not answer.done():
+                    answer.set_result(result)
+
+        self._inbox.put_nowait(asked)
+        return await answer
+
+    def _wake(self) -> None:
+        async def nothing() -> None:
+            return None
+
+        self._inbox.put_nowait(nothing)
+
+    def _background(self, work: Awaitable[None]) -> None:
+        task = asyncio.ensure_future(work)
+        self._tasks.add(task)
+        task.add_done_callback(self._tasks.discard)
+
+    async def _handle_inbox(self) -> None:
+        handled = 0
+        while True:
+            work = await self._inbox.get()
+            handled += 1
+            try:
+                await work()
+                if self._inbox.empty() or handled % MESSAGES_PER_DISPATCH == 0:
+                    await self._dispatch()
+            except StaleLease as error:
+                log.info("stale work dropped", extra={"reason": str(error)})
+            except Exception:
+                log.exception("the orchestrator could not handle a message")
+
+    async def _hear_outcomes(self) -> None:
+        async for outcome in self._pool.outcomes():
+            if outcome is None:
+                self._wake()
+            else:
+                self._inbox.put_nowait(lambda outcome=outcome: self._on_outcome(outcome))  # type: ignore[misc]
+
+    def _report_batch(self, batch: Batch) -> None:
+        self._inbox.put_nowait(lambda: self._on_batch(batch))
+
+    async def _dispatch(self) -> None:
+        """Fill the engine processes' windows, then see which jobs have come to their end."""
+        await self._dispatcher.fill(self._in_order())
+        for run in self._in_order():
+            if run.state is JobState.RUNNING and run.stop is not None and run.all_passes_complete:
+                await self._to(run, JobState.FINALIZING)
+            if run.state is JobState.FINALIZING and run.all_merged:
+                await self._finish(run)
+
+    def _in_order(self) -> list[JobRun]:
+        return sorted(self._runs.values(), key=lambda run: (-run.request.priority, run.created_at))
+
+    # ---- commands, inside ----
+
+    async def _begin(self, job_id: str) -> None:
+        await self._adopt(await self._ledger.job(job_id))
+        self.watch.notify(job_id)
+
+    async def _adopt(self, record: JobRecord) -> None:
+        """Take an unfinished job into memory, resolving a state that a restart left in the middle."""
+        folder = await self._blobs.scene_folder(record.request.bundle)
+        run = JobRun(record, scene_ref(record.request, folder))
+        if record.state is JobState.PREPARING:
+            await self._to(run, JobState.QUEUED)
+        elif record.state is JobState.FINALIZING:
+            await self._to(run, JobState.RUNNING)
+        if run.state is JobState.RUNNING:
+            assert record.facts is not None and record.grid is not None
+            run.start(record.facts, record.grid, await self._ledger.unmerged(record.id), time.monotonic())
+        self._runs[record.id] = run
+
+    async def _halt(self, job_id: str, state: JobState) -> None:
+        record = await self._ledger.job(job_id)
+        if record.state is state:
+            return
+        run = self._runs.get(job_id)
+        running_s = None if run is None else run.running_s(time.monotonic())
+        await self._ledger.change_state(job_id, state, None, running_s)
+        self._forget(job_id)
+
+    async def _resume(self, job_id: str) -> None:
+        record = await self._ledger.job(job_id)
+        await self._ledger.change_state(job_id, JobState.QUEUED if record.facts is None else JobState.RUNNING)
+        await self._begin(job_id)
+
+    async def _delete(self, job_id: str) -> None:
+        if (await self._ledger.job(job_id)).state not in TERMINAL_STATES:
+            await self._halt(job_id, JobState.CANCELLED)
+        await self._ledger.delete_job(job_id)
+        await self._blobs.drop_job(job_id)
+        self.watch.notify(job_id)
+
+    def _forget(self, job_id: str) -> None:
+        """The job is not worked on any more."""
+        self._runs.pop(job_id, None)
+        self._pool.cancel(job_id)
+        self.watch.notify(job_id)
+
+    async def _tile_lease(self, job_id: str, column: int, row: int) -> WriteTileLease:
+        record = await self._ledger.job(job_id)
+        if record.grid is None or record.facts is None:
+            raise NotYetThere(
+                f"job {job_id}: state {record.state}, its tiles are not known before the scene is prepared"
+            )
+        tile = record.grid.index(column, row)
+        if tile is None:
+            raise TileOutsideFrame(
+                f"tile {column}-{row}: expected a column below {record.grid.columns} and a row below {record.grid.rows}"
+            )
+        stored = sorted((t.pass_index, t.sha256) for t in (await self._ledger.unmerged(job_id)).tiles if t.tile == tile)
+        film = None if record.newest is None else record.newest.film
+        if film is None and not stored:
+            raise NotYetThere(f"tile {column}-{row} of job {job_id}: not rendered yet")
+        return WriteTileLease(
+            fence=self._dispatcher.new_fence(),
+            job_id=job_id,
+            width=record.facts.width,
+            height=record.facts.height,
+            rect=record.grid.rect(tile),
+            film_in=None if film is None else self._blobs.output(job_id, film),
+            tiles=tuple(self._blobs.tile(job_id, sha256) for _, sha256 in stored),
+            exr_out=self._blobs.scratch(job_id, f"{uuid.uuid4().hex}.exr"),
+            info=ImageInfo(job_id, record.request.bundle.digest(), record.facts.integrator, record.request.seed),
+        )
+
+    # ---- outcomes ----
+
+    async def _on_outcome(self, outcome: Outcome) -> None:
+        """One report of an engine process; what belongs to a job that was stopped meanwhile is dropped."""
+        run = self._runs.get(outcome.lease.job_id)
+        if isinstance(outcome.lease, WriteTileLease):
+            self._dispatcher.settle(outcome)
+        elif run is None:
+            return
+        elif isinstance(outcome, TileRendered):
+            self._on_tile(run, outcome)
+        elif isinstance(outcome, SamplesTaken):
+            run.note_samples(outcome.lease, outcome.samples)
+        elif isinstance(outcome, TilesFinished):
+            self._committer.end(outcome.lease.fence)
+        elif isinstance(outcome, Prepared):
+            await self._on_prepared(run, outcome)
+        elif isinstance(outcome, Merged):
+            self._background(self._publish(run, outcome))
+        elif isinstance(outcome, LeaseLost):
+            await self._on_fault(run, outcome.lease, FailureKind.INTERNAL if outcome.blamed else None, outcome.reason)
+        elif isinstance(outcome, LeaseFailed):
+            kind = None if outcome.kind is FailureKind.CANCELLED else outcome.kind
+            await self._on_fault(run, outcome.lease, kind, outcome.message)
+
+    def _on_tile(self, run: JobRun, outcome: TileRendered) -> None:
+        lease, rect = outcome.lease, outcome.lease.rects[outcome.position]
+        assert run.grid is not None
+        row, column = divmod(lease.tiles[outcome.position], run.grid.columns)
+        run.note_cost(lease, outcome.position, outcome.seconds)
+        self.tallies.tile_seconds.add(outcome.seconds)
+        commit = TileCommit(
+            fence=lease.fence,
+            job_id=lease.job_id,
+            pass_index=lease.pass_index,
+            tile=lease.tiles[outcome.position],
+            column=column,
+            row=row,
+            rect=rect,
+            samples=rect.area * lease.samples.count,
+            sha256="",
+            seconds=outcome.seconds,
+            rays=outcome.rays,
+            non_finite_samples=outcome.non_finite_samples,
+        )
+        self._committer.add(commit, outcome.sums)
+
+    async def _on_batch(self, batch: Batch) -> None:
+        for commit, taken in zip(batch.commits, batch.taken, strict=True):
+            run = self._runs.get(commit.job_id)
+            if taken and run is not None:
+                run.commit(commit.fence, commit.pass_index, commit.tile, commit.sha256)
+        self.tallies.tiles += sum(batch.taken)
+        self.tallies.stale_tiles += len(batch.taken) - sum(batch.taken)
+        self.tallies.commit_seconds.add(batch.seconds)
+        for fence in batch.ended:
+            for run in self._runs.values():
+                if run.has_lease(fence):
+                    run.end_lease(fence)
+        for job_id in {commit.job_id for commit in batch.commits}:
+            run = self._runs.get(job_id)
+            if batch.fault is not None and run is not None:
+                await self._count_failure(run, FailureKind.RESOURCE, batch.fault)
+            self.watch.notify(job_id)
+
+    async def _on_prepared(self, run: JobRun, outcome: Prepared) -> None:
+        facts, request = outcome.facts, run.request
+        frame = PixelRect(0, 0, facts.width, facts.height)
+        crop = request.crop or facts.crop
+        if frame.area > self._settings.max_pixels:
+            await self._fail(
+                run, f"size = {facts.width}x{facts.height}: expected at most {self._settings.max_pixels} pixels"
+            )
+        elif not frame.contains(crop) or crop.area == 0:
+            await self._fail(
+                run,
+                f"crop = {crop.x},{crop.y} {crop.width}x{crop.height}: expected a part of the frame, "
+                f"{facts.width}x{facts.height} pixels",
+            )
+        else:
+            grid = TileGrid(crop, self._settings.tile_size)
+            await self._ledger.record_facts(outcome.lease.fence, run.id, facts, grid)
+            run.start(facts, grid, None, time.monotonic())
+            self.watch.notify(run.id)
+
+    async def _publish(self, run: JobRun, merged: Merged) -> None:
+        """In its own task, since syncing a film takes time; the result comes back through the inbox."""
+        try:
+            running_s = run.running_s(time.monotonic())
+            revision = await publish(self._ledger, self._blobs, merged, run.newest, running_s)
+        except StaleLease as error:
+            log.info("stale revision dropped", extra={"reason": str(error)})
+        except OSError as error:
+            failed = LeaseFailed(merged.lease, FailureKind.RESOURCE, f"the revision could not be stored: {error}")
+            self._inbox.put_nowait(lambda: self._on_outcome(failed))
+        else:
+            self._inbox.put_nowait(lambda: self._on_published(run, revision))
+
+    async def _on_published(self, run: JobRun, revision: Revision) -> None:
+        run.publish(revision)
+        self.tallies.revisions += 1
+        self.watch.notify(run.id)
+
+    # ---- faults and ends ----
+
+    async def _on_fault(self, run: JobRun, lease: Lease, kind: FailureKind | None, message: str) -> None:
+        """A lease came to nothing; `kind` is None if that was not the job's fault."""
+        if kind is FailureKind.SCENE:
+            await self._fail(run, message)
+            return
+        if kind is not None and await self._count_failure(run, kind, message):
+            return
+        if isinstance(lease, RenderLease):
+            self._committer.end(lease.fence)
+        elif isinstance(lease, PrepareLease) and run.state is JobState.PREPARING:
+            await self._to(run, JobState.QUEUED)
+        elif isinstance(lease, MergeLease):
+            await self._ledger.commit_tiles([], [lease.fence])
+            run.merging = False
+
+    async def _count_failure(self, run: JobRun, kind: FailureKind, message: str) -> bool:
+        """Count a failure; returns True if it was one too many and the job failed."""
+        crash = kind is FailureKind.INTERNAL
+        count = await self._ledger.count_failure(run.id, crash, run.running_s(time.monotonic()))
+        log.warning("work failed", extra={"job": run.id, "kind": str(kind), "count": count, "reason": message})
+        if crash:
+            run.crashes = count
+        if count >= (MOST_CRASHES if crash else MOST_RESOURCE_FAILURES):
+            times = "ended three engine processes" if crash else "ran out of resources three times"
+            await self._fail(run, f"{times}: {message}")
+            return True
+        return False
+
+    async def _fail(self, run: JobRun, reason: str) -> None:
+        await self._to(run, JobState.FAILED, reason)
+        self._forget(run.id)
+
+    async def _finish(self, run: JobRun) -> None:
+        if run.stop is not None and run.stop.warning is not None:
+            await self._ledger.warn(run.id, run.stop.warning)
+        await self._to(run, JobState.SUCCEEDED)
+        self._forget(run.id)
+
+    async def _to(self, run: JobRun, state: JobState, reason: str | None = None) -> None:
+        """Change a run's state in the ledger, then in memory."""
+        await self._ledger.change_state(run.id, state, reason, run.running_s(time.monotonic()))
+        run.state = state
+        self.watch.notify(run.id)

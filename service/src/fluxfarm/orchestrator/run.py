@@ -1,0 +1,237 @@
+"""The part of an unfinished job that lives in memory: which tiles are pending, leased and done.
+
+No input or output here: the orchestrator tells a run what happened and asks it what to do next. Everything in it can
+be rebuilt from the ledger.
+"""
+
+from collections import deque
+from dataclasses import dataclass, field
+
+from fluxfarm.domain.goal import Goal, Measured, Stop, ceiling_spp, has_barriers, next_pass, settled
+from fluxfarm.domain.job import JobState
+from fluxfarm.domain.schedule import SampleRange
+from fluxfarm.domain.tiles import TileGrid
+from fluxfarm.ports import JobRecord, RenderLease, Revision, SceneFacts, SceneRef, Unmerged
+
+# Passes that may be under way before the oldest of them is merged.
+MOST_OPEN_PASSES = 4
+MOST_TILES_IN_A_LEASE = 512
+# Weight of the newest tile in the running mean of the cost.
+COST_WEIGHT = 0.2
+
+
+@dataclass(slots=True)
+class PassRun:
+    """One pass under way. Every tile is in exactly one of pending, leased and done."""
+
+    index: int
+    samples: SampleRange
+    pending: deque[int]
+    leased: set[int] = field(default_factory=set)
+    done: dict[int, str] = field(default_factory=dict)
+
+    @property
+    def complete(self) -> bool:
+        """Whether every tile is committed."""
+        return not self.pending and not self.leased
+
+
+class JobRun:
+    """An unfinished job. Times are in seconds of one monotonic clock, given by the caller as `now`."""
+
+    def __init__(self, record: JobRecord, scene: SceneRef) -> None:
+        self.id = record.id
+        self.request = record.request
+        self.created_at = record.created_at
+        self.scene = scene
+        self.state = record.state
+        self.crashes = record.crashes
+        self.facts: SceneFacts | None = None
+        self.merging = False
+        self._grid: TileGrid | None = None
+        self._goal = record.request.goal
+        self._passes: dict[int, PassRun] = {}
+        self._leases: dict[int, RenderLease] = {}
+        self._in_flight: dict[int, int] = {}
+        self._opened = record.passes_opened
+        self._merged_passes = 0 if record.newest is None else record.newest.passes
+        self._merged_spp = 0
+        self._newest = record.newest
+        self._stop: Stop | None = None
+        self._running_before = record.running_s
+        self._running_since: float | None = None
+        self._cost_s: float | None = None
+
+    # ---- verbs ----
+
+    def start(self, facts: SceneFacts, grid: TileGrid, unmerged: Unmerged | None, now: float) -> None:
+        """The scene is known: begin, or go on from what the ledger holds."""
+        self.state = JobState.RUNNING
+        self.facts, self._grid = facts, grid
+        self._goal = settled(self.request.goal, facts.scene_spp)
+        self._running_since = now
+        if unmerged is None:
+            return
+        self._merged_spp = unmerged.merged_spp
+        for index, samples in unmerged.passes:
+            opened = PassRun(index, samples, deque())
+            opened.done = {tile.tile: tile.sha256 for tile in unmerged.tiles if tile.pass_index == index}
+            opened.pending.extend(tile for tile in grid.order() if tile not in opened.done)
+            self._passes[index] = opened
+
+    def open_pass(self, now: float) -> PassRun | None:
+        """Open the next pass if its time has come; None if not, or if the job has its samples (see `warning`)."""
+        if self._stop is not None or self._grid is None or any(p.pending for p in self._passes.values()):
+            return None
+        barriers = has_barriers(self._goal, self.request.limits)
+        if len(self._passes) >= (1 if barriers else MOST_OPEN_PASSES):
+            return None
+        spp = max((p.samples.end for p in self._passes.values()), default=self._merged_spp)
+        error = None if self._newest is None else self._newest.error_noise
+        measured = Measured(self._merged_passes + len(self._passes), spp, self.running_s(now), error)
+        samples = next_pass(self._goal, self.request.limits, measured)
+        if isinstance(samples, Stop):
+            self._stop = samples
+            return None
+        opened = PassRun(measured.passes, samples, deque(self._grid.order()))
+        self._passes[opened.index] = opened
+        self._opened = opened.index + 1
+        return opened
+
+    def take_lease(self, fence: int, threads: int, workers: int, target_s: float) -> RenderLease | None:
+        """Lease tiles of the oldest pass that has some, for about `target_s` seconds on `threads` threads."""
+        work = next((p for p in self._passes.values() if p.pending), None)
+        if work is None or self.facts is None or self._grid is None:
+            return None
+        count = self._lease_size(work, threads, workers, target_s)
+        tiles = tuple(work.pending.popleft() for _ in range(count))
+        work.leased.update(tiles)
+        lease = RenderLease(
+            fence=fence,
+            job_id=self.id,
+            scene=self.scene,
+            width=self.facts.width,
+            height=self.facts.height,
+            integrator=self.facts.integrator,
+            seed=self.request.seed,
+            pass_index=work.index,
+            samples=work.samples,
+            tiles=tiles,
+            rects=tuple(self._grid.rect(tile) for tile in tiles),
+        )
+        self._leases[fence] = lease
+        return lease
+
+    def note_samples(self, lease: RenderLease, samples: int) -> None:
+        """The engine says how many camera samples of the lease it has finished."""
+        if lease.fence in self._leases:
+            self._in_flight[lease.fence] = samples
+
+    def note_cost(self, lease: RenderLease, position: int, seconds: float) -> None:
+        """A tile took `seconds` on one thread."""
+        cost = seconds / max(1, lease.rects[position].area * lease.samples.count)
+        self._cost_s = cost if self._cost_s is None else (1 - COST_WEIGHT) * self._cost_s + COST_WEIGHT * cost
+
+    def commit(self, fence: int, pass_index: int, tile: int, sha256: str) -> None:
+        """The ledger took a tile."""
+        work = self._passes.get(pass_index)
+        if fence not in self._leases or work is None or tile in work.done:
+            return
+        work.leased.discard(tile)
+        work.done[tile] = sha256
+
+    def end_lease(self, fence: int) -> None:
+        """The lease is over; its tiles that are not done become pending again, in front."""
+        lease = self._leases.pop(fence, None)
+        self._in_flight.pop(fence, None)
+        work = None if lease is None else self._passes.get(lease.pass_index)
+        if lease is None or work is None:
+            return
+        undone = [tile for tile in lease.tiles if tile in work.leased]
+        work.leased.difference_update(undone)
+        work.pending.extendleft(reversed(undone))
+
+    def publish(self, revision: Revision) -> None:
+        """A revision contains all passes before `revision.passes`."""
+        self.merging = False
+        for index in [index for index in self._passes if index < revision.passes]:
+            self._merged_spp = self._passes.pop(index).samples.end
+        self._merged_passes = revision.passes
+        self._newest = revision
+
+    # ---- questions ----
+
+    def running_s(self, now: float) -> float:
+        """Seconds spent in RUNNING so far, over all restarts and pauses."""
+        return self._running_before + (0.0 if self._running_since is None else now - self._running_since)
+
+    def mergeable(self) -> list[PassRun]:
+        """Complete passes that come next in the film, oldest first."""
+        ready: list[PassRun] = []
+        while (work := self._passes.get(self._merged_passes + len(ready))) is not None and work.complete:
+            ready.append(work)
+        return ready
+
+    def has_lease(self, fence: int) -> bool:
+        """Whether a render lease of this run is still open."""
+        return fence in self._leases
+
+    @property
+    def newest(self) -> Revision | None:
+        """The newest revision."""
+        return self._newest
+
+    @property
+    def stop(self) -> Stop | None:
+        """Set once no further pass will be opened."""
+        return self._stop
+
+    @property
+    def all_passes_complete(self) -> bool:
+        """Whether no tile is left to render in any open pass."""
+        return all(work.complete for work in self._passes.values())
+
+    @property
+    def all_merged(self) -> bool:
+        """Whether the newest revision contains everything."""
+        return not self._passes and not self.merging
+
+    @property
+    def grid(self) -> TileGrid | None:
+        """The tiles, once the scene is known."""
+        return self._grid
+
+    @property
+    def goal(self) -> Goal:
+        """The goal; never absent once the scene is known."""
+        return self._goal
+
+    @property
+    def ceiling(self) -> int | None:
+        """Most samples per pixel that will be taken."""
+        return ceiling_spp(self._goal, self.request.limits)
+
+    def samples_in_flight(self) -> int:
+        """Camera samples that engine processes report beyond the committed tiles."""
+        extra = 0
+        for fence, samples in self._in_flight.items():
+            lease = self._leases[fence]
+            work = self._passes.get(lease.pass_index)
+            committed = (
+                0
+                if work is None
+                else sum(rect.area for tile, rect in zip(lease.tiles, lease.rects, strict=True) if tile in work.done)
+            )
+            extra += max(0, samples - committed * lease.samples.count)
+        return extra
+
+    def _lease_size(self, work: PassRun, threads: int, workers: int, target_s: float) -> int:
+        """Number of tiles for one lease; small while the cost of a tile is unknown."""
+        assert self._grid is not None
+        if self._cost_s is None:
+            wanted = 4 * threads
+        else:
+            tile_s = self._cost_s * self._grid.tile_size**2 * work.samples.count
+            wanted = int(target_s * threads / max(tile_s, 1e-9))
+        fair = -(-len(work.pending) // workers)
+        return max(1, min(max(wanted, threads), fair, MOST_TILES_IN_A_LEASE, len(work.pending)))

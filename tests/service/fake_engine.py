@@ -1,0 +1,180 @@
+"""An engine without pictures: speaks proto/fluxfarm/v1 and does what its scene file tells it.
+
+Lines `fake: VERB ARGUMENTS` anywhere in the scene file, for example inside XML comments:
+
+    size W H           frame size, else 64 64            spp N            samples the scene asks for
+    tile_seconds S     time of each tile, else 0         load_seconds S   time of LoadScene
+    fail KIND TEXT     LoadScene answers Failure         warn TEXT        a warning of SceneLoaded
+    crash_in_pass B    SIGKILL itself in the pass that begins at sample B
+    crash_once FILE    the same in the second pass, but only if FILE is not there yet (it is made first)
+    run_out FILE       RenderTiles answers RESOURCE until FILE is longer than two bytes
+    deaf               renders for ever and does not hear Cancel
+
+The sums of a tile depend on (seed, rect, sample range) alone; a film is the digests of all tiles merged so far.
+"""
+
+import argparse
+import hashlib
+import os
+import queue
+import re
+import signal
+import socket
+import struct
+import threading
+import time
+from pathlib import Path
+
+from fluxfarm.adapters.protocol import engine_pb2 as pb
+
+EXR_MAGIC = b"\x76\x2f\x31\x01"
+PNG_MAGIC = b"\x89PNG\r\n\x1a\n"
+
+
+class Cancelled(Exception):
+    pass
+
+
+class FakeEngine:
+    def __init__(self, connection: socket.socket, threads: int) -> None:
+        self.connection, self.threads = connection, threads
+        self.requests: queue.SimpleQueue[pb.Request | None] = queue.SimpleQueue()
+        self.cancelled: set[int] = set()
+        self.scenes: dict[str, dict[str, str]] = {}
+
+    def run(self) -> None:
+        self.reply(0, hello=pb.Hello(protocol_version=1, engine_build="fake-1", threads=self.threads, pid=os.getpid()))
+        threading.Thread(target=self.read_requests, daemon=True).start()
+        while (request := self.requests.get()) is not None:
+            kind = request.WhichOneof("body")
+            try:
+                if request.request_id in self.cancelled:
+                    raise Cancelled
+                getattr(self, kind)(request.request_id, getattr(request, kind))
+            except Cancelled:
+                self.fail(request.request_id, pb.FAILURE_KIND_CANCELLED, "cancelled")
+
+    def read_requests(self) -> None:
+        stream = self.connection.makefile("rb")
+        while len(length := stream.read(4)) == 4:
+            request = pb.Request.FromString(stream.read(struct.unpack("<I", length)[0]))
+            if request.WhichOneof("body") == "cancel":
+                self.cancelled.add(request.cancel.target_request_id)
+            elif request.WhichOneof("body") == "ping":
+                self.reply(request.request_id, pong=pb.Pong())
+            else:
+                self.requests.put(request)
+        os._exit(0)  # end of file ends the engine, whatever it does
+
+    def reply(self, request_id: int, **body: object) -> None:
+        frame = pb.Reply(request_id=request_id, **body).SerializeToString()
+        self.connection.sendall(struct.pack("<I", len(frame)) + frame)
+
+    def fail(self, request_id: int, kind: int, message: str) -> None:
+        self.reply(request_id, failure=pb.Failure(kind=kind, message=message))
+
+    def load_scene(self, request_id: int, load: pb.LoadScene) -> None:
+        text = (Path(load.folder) / load.entry).read_text(errors="replace")
+        told = {verb: argument for verb, argument in re.findall(r"fake: *(\w+) *(.*?) *(?:-->|$)", text, re.MULTILINE)}
+        if "fail" in told:
+            kind, _, message = told["fail"].partition(" ")
+            return self.fail(request_id, pb.FailureKind.Value("FAILURE_KIND_" + kind), message)
+        self.wait(request_id, float(told.get("load_seconds", 0)))
+        self.scenes[load.scene_digest] = told
+        width, height = (int(side) for side in told.get("size", "64 64").split())
+        width, height = load.width or width, load.height or height
+        loaded = pb.SceneLoaded(
+            width=width,
+            height=height,
+            scene_spp=int(told.get("spp", 0)),
+            crop=pb.PixelRect(width=width, height=height),
+            integrator=load.integrator or "path",
+            warnings=[told["warn"]] if "warn" in told else [],
+            plan_json='{"integrator": "path", "parts": {}}',
+        )
+        return self.reply(request_id, scene_loaded=loaded)
+
+    def render_tiles(self, request_id: int, work: pb.RenderTiles) -> None:
+        told = self.scenes[work.scene_digest]
+        if "run_out" in told and len(read(told["run_out"])) <= 2:
+            append(told["run_out"], b"x")
+            return self.fail(request_id, pb.FAILURE_KIND_RESOURCE, "out of memory: 8 GiB, expected less")
+        while "deaf" in told:
+            time.sleep(1)
+        for index, rect in enumerate(work.tiles):
+            self.crash_if_told(told, work.samples)
+            self.wait(request_id, float(told.get("tile_seconds", 0)))
+            key = f"{work.seed} {rect.x},{rect.y},{rect.width},{rect.height} {work.samples.begin}-{work.samples.end}"
+            sums = pb.TileSums(
+                rect=rect, samples=work.samples, seed=work.seed, radiance=hashlib.sha256(key.encode()).digest()
+            )
+            count = work.samples.end - work.samples.begin
+            seconds = float(told.get("tile_seconds", 0.0001))
+            done = pb.TileDone(
+                tile=index, sums=sums.SerializeToString(), seconds=seconds, rays=rect.width * rect.height * count
+            )
+            self.reply(request_id, tile_done=done)
+        return self.reply(request_id, tiles_done=pb.TilesDone())
+
+    def merge_pass(self, request_id: int, work: pb.MergePass) -> None:
+        film, samples = read(work.film_in), 0
+        for file in work.tiles:
+            tile = pb.TileSums.FromString(Path(file.path).read_bytes())
+            samples = max(samples, tile.samples.end)
+            film += hashlib.sha256(tile.SerializeToString()).digest()
+        Path(work.film_out).write_bytes(film)
+        Path(work.exr_out).write_bytes(image(film, samples))
+        Path(work.png_out).write_bytes(PNG_MAGIC + hashlib.sha256(film).digest())
+        merged = pb.PassMerged(min_samples=samples, max_samples=samples, mean_r=0.5, mean_g=0.25, mean_b=0.125)
+        if samples >= 2:
+            merged.error_noise = samples**-0.5
+        self.reply(request_id, pass_merged=merged)
+
+    def write_tile(self, request_id: int, work: pb.WriteTile) -> None:
+        Path(work.exr_out).write_bytes(image(read(work.film_in), len(work.tiles)))
+        self.reply(request_id, tile_written=pb.TileWritten())
+
+    def wait(self, request_id: int, seconds: float) -> None:
+        end = time.monotonic() + seconds
+        while (left := end - time.monotonic()) > 0:
+            if request_id in self.cancelled:
+                raise Cancelled
+            time.sleep(min(left, 0.05))
+        if request_id in self.cancelled:
+            raise Cancelled
+
+    def crash_if_told(self, told: dict[str, str], samples: pb.SampleRange) -> None:
+        once = told.get("crash_once")
+        if once and samples.begin >= 1 and not Path(once).exists():
+            append(once, b"crashed")
+        elif int(told.get("crash_in_pass", -1)) != samples.begin:
+            return
+        print("about to crash, as told", flush=True)
+        os.kill(os.getpid(), signal.SIGKILL)
+
+
+def image(film: bytes, samples: int) -> bytes:
+    """A file that starts like an EXR; its bytes tell its film and its samples apart from all others."""
+    return EXR_MAGIC + struct.pack("<I", samples) + hashlib.sha256(film).digest() + bytes(1000)
+
+
+def read(path: str) -> bytes:
+    return Path(path).read_bytes() if path and Path(path).exists() else b""
+
+
+def append(path: str, text: bytes) -> None:
+    with Path(path).open("ab") as file:
+        file.write(text)
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser()
+    parser.add_argument("command", choices=["worker"])
+    parser.add_argument("--fd", type=int)
+    parser.add_argument("--threads", type=int)
+    arguments = parser.parse_args()
+    FakeEngine(socket.socket(fileno=arguments.fd), arguments.threads).run()
+
+
+if __name__ == "__main__":
+    main()
