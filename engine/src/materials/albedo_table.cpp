@@ -20,8 +20,8 @@ AlbedoTable::AlbedoTable(const Bsdf& bsdf, Side side) {
       const double k = j + 0.5;
       const float angle = fraction(k * 0.8566748838545029) * kTwoPi;
       const Vec3f wo{r * std::cos(angle), r * std::sin(angle), side == Side::kFront ? z : -z};
-      const auto s = bsdf.sample(wo, fraction(k * 0.7338918566271260),
-                                 {fraction(k * 0.6287067210378087), fraction(k * 0.5385972572236101)});
+      const auto s =
+          bsdf.sample(wo, fraction(k * 0.7338918566271260), {fraction(k * 0.6287067210378087), fraction(k * 0.5385972572236101)});
       if (s) sum += s->weight * sqr(s->eta);
     }
     nodes_[static_cast<std::size_t>(i)] = sum / static_cast<float>(kPoints);

@@ -1,8 +1,9 @@
 // Beckmann distribution of microfacet normals (Gaussian slopes) with Smith masking, possibly anisotropic. Members as in ggx.h.
 //
 // [Walter07] B. Walter et al., "Microfacet Models for Refraction through Rough Surfaces", EGSR 2007: the fit of G1.
-// [Heitz14]  E. Heitz and E. d'Eon, "Importance Sampling Microfacet-Based BSDFs using the Distribution of Visible Normals", EGSR 2014.
-// [Jakob14]  W. Jakob, "An Improved Visible Normal Sampling Routine for the Beckmann Distribution", 2014: inversion in the domain of erf.
+// [Heitz14]  E. Heitz and E. d'Eon, "Importance Sampling Microfacet-Based BSDFs using the Distribution of Visible Normals", EGSR
+// 2014. [Jakob14]  W. Jakob, "An Improved Visible Normal Sampling Routine for the Beckmann Distribution", 2014: inversion in the
+// domain of erf.
 //
 // The BSDF's value uses the rational fit of G1, as Mitsuba does (within 0.35 % of the exact G1); the density of the sampled normals
 // is normalised by the exact G1, so that pdf and samples agree and the estimate of the fitted BSDF is unbiased.
@@ -85,8 +86,8 @@ class Beckmann {
     return std::clamp(slope - 2 * error * facing / denominator, -4.0f, 4.0f);
   }
 
-  // (erf(end) - x) / (1 + erf(end)) for the wanted x, as a function of y = 1 - u: it is y at normal incidence; own least-squares fit of
-  // what is added towards grazing incidence.
+  // (erf(end) - x) / (1 + erf(end)) for the wanted x, as a function of y = 1 - u: it is y at normal incidence; own least-squares
+  // fit of what is added towards grazing incidence.
   static float start_of_inversion(float sin, float y) {
     const float q = std::sqrt(y);
     const float c0 = -0.66361121f + q * (3.071971f + q * (-1.3079916f + q * 1.2384929f));
@@ -106,7 +107,7 @@ class Beckmann {
   }
 
   static constexpr float kFitEnd = 2.6f;
-  static constexpr float kFit[10] = {0.564189754f,  -2.83290019e-05f, 0.564786359f,  -0.00438846206f, -0.0785387231f,
+  static constexpr float kFit[10] = {0.564189754f,   -2.83290019e-05f, 0.564786359f,   -0.00438846206f, -0.0785387231f,
                                      -0.0302712888f, 0.0535619906f,    -0.0232747458f, 0.00456942415f,  -0.000352468434f};
 
   float alpha_u_, alpha_v_, inv_alpha_u_, inv_alpha_v_, scale_;

@@ -1,4 +1,5 @@
-// One function for each BSDF. The classes themselves live in the .cpp file of the same name; make_bsdf.h is the way in from outside.
+// One function for each BSDF. The classes themselves live in the .cpp file of the same name; make_bsdf.h is the way in from
+// outside.
 #pragma once
 
 #include <memory>

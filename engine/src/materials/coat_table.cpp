@@ -12,8 +12,8 @@ struct CoatResponse {
   float reflectance = 0, transmittance = 0;
 };
 
-// One of `points` abscissae in (0,1) with its weight: the midpoint rule after t^3 (10 - 15 t + 6 t^2), which gathers points at the ends,
-// where the tails of the distributions are.
+// One of `points` abscissae in (0,1) with its weight: the midpoint rule after t^3 (10 - 15 t + 6 t^2), which gathers points at the
+// ends, where the tails of the distributions are.
 struct Abscissa {
   Abscissa(int i, int points) {
     const float step = 1 / static_cast<float>(points), t = (static_cast<float>(i) + 0.5f) * step;

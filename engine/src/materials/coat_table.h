@@ -1,8 +1,8 @@
 // Transmittance and reflectance of a rough dielectric coat for diffuse light, tabulated once per material.
 //
-// As in Mitsuba's `roughplastic`: 64 equidistant cosines, linear between them; light that the microfacets would scatter twice is lost.
-// The internal reflectance is the plain mean of the 64 nodes, which is 1.6 % below the integral for a smooth coat: kept, because the
-// colour of the base depends on it and pictures have to agree.
+// As in Mitsuba's `roughplastic`: 64 equidistant cosines, linear between them; light that the microfacets would scatter twice is
+// lost. The internal reflectance is the plain mean of the 64 nodes, which is 1.6 % below the integral for a smooth coat: kept,
+// because the colour of the base depends on it and pictures have to agree.
 #pragma once
 
 #include <array>

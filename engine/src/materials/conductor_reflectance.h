@@ -9,11 +9,7 @@ namespace fluxfarm {
 class ConductorReflectance {
  public:
   explicit ConductorReflectance(const ConductorDescription& d)
-      : perfect_(d.perfect),
-        factor_(d.specular_reflectance),
-        r_(d.eta.r, d.k.r),
-        g_(d.eta.g, d.k.g),
-        b_(d.eta.b, d.k.b) {}
+      : perfect_(d.perfect), factor_(d.specular_reflectance), r_(d.eta.r, d.k.r), g_(d.eta.g, d.k.g), b_(d.eta.b, d.k.b) {}
 
   // cos_i in [0,1] between the direction and the (microfacet) normal.
   Rgb operator()(float cos_i) const {

@@ -1,5 +1,5 @@
-// Diffuse base under a smooth dielectric coat: mirror reflection at the coat, and light that crosses it, is scattered by the base any
-// number of times under the coat's internal reflection, and crosses back. One-sided.
+// Diffuse base under a smooth dielectric coat: mirror reflection at the coat, and light that crosses it, is scattered by the base
+// any number of times under the coat's internal reflection, and crosses back. One-sided.
 //
 // The base is that of Mitsuba's `plastic`: rho / (1 - rho R_i) with R_i the internal diffuse reflectance; without `nonlinear` the
 // colour of the base does not deepen: rho / (1 - R_i).

@@ -2,7 +2,8 @@
 // Loses the light that the microfacets would scatter twice or more: a white one is not white at high roughness.
 //
 // [Walter07] B. Walter et al., "Microfacet Models for Refraction through Rough Surfaces", EGSR 2007.
-// [Heitz14]  E. Heitz and E. d'Eon, "Importance Sampling Microfacet-Based BSDFs using the Distribution of Visible Normals", EGSR 2014.
+// [Heitz14]  E. Heitz and E. d'Eon, "Importance Sampling Microfacet-Based BSDFs using the Distribution of Visible Normals", EGSR
+// 2014.
 #include "materials/albedo_table.h"
 #include "materials/beckmann.h"
 #include "materials/bsdf_factories.h"

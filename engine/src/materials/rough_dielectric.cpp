@@ -1,9 +1,11 @@
 // Rough interface between two dielectrics (ground glass): single scattering by microfacets that reflect and refract as Fresnel and
 // Snell say. Two-sided; interior is the side of -z. Refracted radiance scales by (eta_wo / eta_wi)^2.
-// Loses the light that the microfacets would scatter twice or more. With equal indices the interface is invisible: smooth dielectric.
+// Loses the light that the microfacets would scatter twice or more. With equal indices the interface is invisible: smooth
+// dielectric.
 //
 // [Walter07] B. Walter et al., "Microfacet Models for Refraction through Rough Surfaces", EGSR 2007.
-// [Heitz14]  E. Heitz and E. d'Eon, "Importance Sampling Microfacet-Based BSDFs using the Distribution of Visible Normals", EGSR 2014.
+// [Heitz14]  E. Heitz and E. d'Eon, "Importance Sampling Microfacet-Based BSDFs using the Distribution of Visible Normals", EGSR
+// 2014.
 #include "materials/albedo_table.h"
 #include "materials/beckmann.h"
 #include "materials/bsdf_factories.h"
@@ -61,10 +63,8 @@ class RoughDielectric final : public Bsdf {
     const Vec3f wi = refract(wo, m, cos_o, fresnel.cos_t, fresnel.eta);
     const BsdfValue v = transmitted(fresnel.reflectance, d, 1, visible, cos_o, fresnel.cos_t, fresnel.eta);
     if (wi.z * wo.z >= 0 || !(v.pdf > 0)) return std::nullopt;
-    return BsdfSample{.wi = wi,
-                      .weight = transmittance_ * (masking_ratio(wo, wi, visible) / sqr(fresnel.eta)),
-                      .pdf = v.pdf,
-                      .eta = fresnel.eta};
+    return BsdfSample{
+        .wi = wi, .weight = transmittance_ * (masking_ratio(wo, wi, visible) / sqr(fresnel.eta)), .pdf = v.pdf, .eta = fresnel.eta};
   }
 
   Rgb albedo(Vec3f wo) const override { return wo.z > 0 ? albedo_outside_(wo.z) : albedo_inside_(-wo.z); }
@@ -72,8 +72,8 @@ class RoughDielectric final : public Bsdf {
   bool transmits() const override { return true; }
 
  private:
-  // f = (1 - F) D G |cos_o cos_i| / (|wo.z wi.z| (cos_o + eta cos_i)^2) with the scaling of radiance; the pdf has the Jacobian of the
-  // half vector, eta^2 |cos_i| / (cos_o + eta cos_i)^2.                                        [Walter07, section 4.2]
+  // f = (1 - F) D G |cos_o cos_i| / (|wo.z wi.z| (cos_o + eta cos_i)^2) with the scaling of radiance; the pdf has the Jacobian of
+  // the half vector, eta^2 |cos_i| / (cos_o + eta cos_i)^2.                                        [Walter07, section 4.2]
   BsdfValue transmitted(float fresnel, float d, float g, float visible, float cos_o, float cos_i, float eta) const {
     const float root = cos_o + eta * cos_i;
     const float jacobian = (1 - fresnel) * d * std::abs(cos_o * cos_i) / (root * root);
@@ -95,7 +95,8 @@ class RoughDielectric final : public Bsdf {
 
 std::unique_ptr<Bsdf> make_rough_dielectric(const RoughDielectricDescription& d) {
   // Below this contrast the half vector of refraction loses its digits.
-  if (std::abs(d.dielectric.eta - 1) < 1e-4f) return make_dielectric({1, d.dielectric.specular_reflectance, d.dielectric.specular_transmittance});
+  if (std::abs(d.dielectric.eta - 1) < 1e-4f)
+    return make_dielectric({1, d.dielectric.specular_reflectance, d.dielectric.specular_transmittance});
   if (d.roughness.distribution == MicrofacetDistribution::kGgx) return std::make_unique<RoughDielectric<Ggx>>(d);
   return std::make_unique<RoughDielectric<Beckmann>>(d);
 }

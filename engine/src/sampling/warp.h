@@ -1,7 +1,7 @@
 // Maps from the unit square to the shapes that Monte Carlo needs, each with its density.
 //
-// Every map is continuous and area-preserving up to its density, so stratified points stay stratified. A density is zero outside the
-// shape; the measure is said at each one. Directions have z along the axis of the shape.
+// Every map is continuous and area-preserving up to its density, so stratified points stay stratified. A density is zero outside
+// the shape; the measure is said at each one. Directions have z along the axis of the shape.
 //
 // [Shirley97] P. Shirley and K. Chiu, "A Low Distortion Map Between Disk and Square", JGT 2(3), 1997.
 // [Heitz19]   E. Heitz, "A Low-Distortion Map Between Triangle and Square", tech. report hal-02073696, 2019.
@@ -53,9 +53,7 @@ inline Vec3f square_to_uniform_cone(Vec2f u, float cos_max) {
   return {p.x * scale, p.y * scale, 1 - depth};
 }
 // Per steradian; cos_max < 1.
-inline float square_to_uniform_cone_pdf(Vec3f w, float cos_max) {
-  return w.z >= cos_max ? 1 / (kTwoPi * (1 - cos_max)) : 0.0f;
-}
+inline float square_to_uniform_cone_pdf(Vec3f w, float cos_max) { return w.z >= cos_max ? 1 / (kTwoPi * (1 - cos_max)) : 0.0f; }
 
 inline Vec3f square_to_uniform_hemisphere(Vec2f u) { return square_to_uniform_cone(u, 0); }
 // Per steradian.

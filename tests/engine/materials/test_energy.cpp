@@ -1,5 +1,5 @@
-// Energy: directional albedo at most 1, albedo() against it, and the white furnace (D8 of the accuracy catalogue) against a quadrature
-// that shares no code with the engine.
+// Energy: directional albedo at most 1, albedo() against it, and the white furnace (D8 of the accuracy catalogue) against a
+// quadrature that shares no code with the engine.
 //
 // [Walter07] B. Walter et al., "Microfacet Models for Refraction through Rough Surfaces", EGSR 2007.
 #include <gtest/gtest.h>

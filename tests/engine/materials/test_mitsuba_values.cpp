@@ -66,7 +66,8 @@ TEST(MitsubaValues, AgreeForEveryBsdf) {
     const Tolerance t = tolerance(row.name);
     const double f[3] = {v.f.r, v.f.g, v.f.b};
     for (int channel = 0; channel < 3; ++channel) {
-      EXPECT_NEAR(f[channel], row.f[channel], t.f * row.f[channel] + 1e-9) << "channel " << channel << " relative " << f[channel] / row.f[channel] - 1;
+      EXPECT_NEAR(f[channel], row.f[channel], t.f * row.f[channel] + 1e-9)
+          << "channel " << channel << " relative " << f[channel] / row.f[channel] - 1;
     }
     EXPECT_NEAR(v.pdf, row.pdf, t.pdf * row.pdf + 1e-9) << "pdf relative " << v.pdf / row.pdf - 1;
   }

@@ -1,4 +1,5 @@
-// Corners: grazing and horizontal directions, tiny roughness, equal indices, the ends of the sample square. Never NaN, never infinity.
+// Corners: grazing and horizontal directions, tiny roughness, equal indices, the ends of the sample square. Never NaN, never
+// infinity.
 #include <gtest/gtest.h>
 
 #include "cases.h"

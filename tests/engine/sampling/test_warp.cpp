@@ -13,7 +13,8 @@ constexpr int kTests = 8;
 
 template <class Warp, class Density>
 ChiSquareResult test_directions(Warp warp, Density density) {
-  return chi_square({}, [&](float, Vec2f u) { return std::optional(warp(u)); }, density);
+  return chi_square(
+      {}, [&](float, Vec2f u) { return std::optional(warp(u)); }, density);
 }
 
 void expect_accepted(const ChiSquareResult& r, double quadrature_error = 1e-4) {

@@ -1,7 +1,7 @@
 // Pearson's chi-square test of samples on the sphere against the density they claim.
 //
-// The sphere is cut into cells; the expected count of a cell is the integral of the density over it. A sampler may fail (absorbed, or
-// a delta lobe was chosen): all failures are one more cell, expected 1 - integral. Cells that expect fewer than five are pooled.
+// The sphere is cut into cells; the expected count of a cell is the integral of the density over it. A sampler may fail (absorbed,
+// or a delta lobe was chosen): all failures are one more cell, expected 1 - integral. Cells that expect fewer than five are pooled.
 //
 // [Sidak67] Z. Sidak, "Rectangular Confidence Regions for the Means of Multivariate Normal Distributions", JASA 62, 1967.
 #pragma once
