@@ -1,8 +1,8 @@
 // Fresnel's equations for unpolarised light at a smooth interface, and the mean over the hemisphere for a diffuse base under it.
 //
 // [Born99]  M. Born and E. Wolf, "Principles of Optics", 7th edition, 1999, sections 1.5 and 14.2.
-// [Egan73]  W. Egan and T. Hilgeman, "Optical Properties of Inhomogeneous Materials" (fit of the internal diffuse reflectance).
-// [dEon11]  E. d'Eon and G. Irving, "A Quantized-Diffusion Model for Rendering Translucent Materials", SIGGRAPH 2011 (another fit).
+// [Egan73]  W. Egan and T. Hilgeman, 1973: fit of the internal diffuse reflectance, known to us through Mitsuba only.
+// [dEon11]  E. d'Eon and G. Irving, "A Quantized-Diffusion Model for Rendering Translucent Materials", SIGGRAPH 2011: another fit.
 #pragma once
 
 #include <cmath>

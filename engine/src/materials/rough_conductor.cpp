@@ -26,7 +26,7 @@ class RoughConductor final : public Bsdf {
     if (!m) return {};
     const float d = distribution_.normal_density(*m);
     if (!(d > 0)) return {};
-    // f = F D G1 G1 / (4 cos cos)                                                    [Walter07, section 4.2]
+    // f = F D G1 G1 / (4 cos cos)  [Walter07]
     const float f = 0.25f * d * distribution_.masking_by_cosine(wo) * distribution_.masking_by_cosine(wi);
     return {reflectance_(dot(wo, *m)) * f, 0.25f * d * distribution_.visible_by_cosine(wo)};
   }

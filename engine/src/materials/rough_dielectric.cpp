@@ -73,7 +73,7 @@ class RoughDielectric final : public Bsdf {
 
  private:
   // f = (1 - F) D G |cos_o cos_i| / (|wo.z wi.z| (cos_o + eta cos_i)^2) with the scaling of radiance; the pdf has the Jacobian of
-  // the half vector, eta^2 |cos_i| / (cos_o + eta cos_i)^2.                                        [Walter07, section 4.2]
+  // the half vector, eta^2 |cos_i| / (cos_o + eta cos_i)^2.  [Walter07]
   BsdfValue transmitted(float fresnel, float d, float g, float visible, float cos_o, float cos_i, float eta) const {
     const float root = cos_o + eta * cos_i;
     const float jacobian = (1 - fresnel) * d * std::abs(cos_o * cos_i) / (root * root);
