@@ -1,0 +1,18 @@
+// Limits that keep a hostile or mistaken scene from taking the machine down. README.md lists them for users.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+namespace fluxfarm {
+
+inline constexpr std::uintmax_t kMaxSceneTextBytes = 64u << 20;           // one XML or JSON file
+inline constexpr std::uintmax_t kMaxMeshFileBytes = std::uintmax_t{2} << 30;  // one OBJ or PLY file
+inline constexpr int kMaxNesting = 64;                                    // elements within elements
+inline constexpr int kMaxIncludeDepth = 16;                               // files that include files
+inline constexpr int kMaxIncludes = 256;                                  // <include> elements followed in one scene
+inline constexpr std::size_t kMaxAttributeLength = 64u << 10;             // an attribute after $name substitution
+inline constexpr std::int64_t kMaxImageSide = 65536;                      // pixels
+inline constexpr std::int64_t kMaxImagePixels = std::int64_t{1} << 27;
+
+}  // namespace fluxfarm

@@ -1,0 +1,15 @@
+// Reads emitter plugins: area (inside a shape), point and constant (in the scene).
+#pragma once
+
+#include "io/plugin_tree.h"
+#include "scene/description.h"
+
+namespace fluxfarm {
+
+// Radiance (W m^-2 sr^-1) of an `area` emitter inside `shape`. Throws SceneError for other emitters.
+Rgb read_area_emitter(const PluginNode& emitter, const PluginNode& shape);
+
+// An emitter that stands in the scene by itself. Throws SceneError.
+EmitterDescription read_scene_emitter(const PluginNode& emitter);
+
+}  // namespace fluxfarm

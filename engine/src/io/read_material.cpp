@@ -1,0 +1,157 @@
+#include "io/read_material.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "io/conductor_presets.h"
+#include "io/named_ior.h"
+#include "io/properties.h"
+#include "io/text.h"
+#include "support/error.h"
+
+namespace fluxfarm {
+namespace {
+
+// An index of refraction given as a number or by the name of a material.
+float read_ior(Properties& properties, const std::string& name, const char* default_name) {
+  const PropertyValue* value = properties.raw(name);
+  const std::string* text = value ? std::get_if<std::string>(value) : nullptr;
+  if (value && !text) return properties.number(name, 1, kPositive);
+  const std::optional<float> ior = named_ior(text ? *text : default_name);
+  if (!ior) properties.fail(name, "expected a number greater than 0 or one of: " + joined(ior_names()));
+  return *ior;
+}
+
+float read_relative_ior(Properties& properties, const char* default_interior) {
+  const float interior = read_ior(properties, "int_ior", default_interior);
+  return interior / read_ior(properties, "ext_ior", "air");
+}
+
+DielectricDescription read_dielectric(Properties& properties) {
+  DielectricDescription result;
+  result.eta = read_relative_ior(properties, "bk7");
+  result.specular_reflectance = properties.rgb("specular_reflectance", Rgb(1), kUnitInterval);
+  result.specular_transmittance = properties.rgb("specular_transmittance", Rgb(1), kUnitInterval);
+  return result;
+}
+
+// Without eta, k and material it is a perfect mirror, as in Mitsuba.
+ConductorDescription read_conductor(Properties& properties) {
+  ConductorDescription result;
+  const std::string material = properties.text("material", "none");
+  const bool explicit_index = properties.has("eta") || properties.has("k");
+  if (material != "none") {
+    if (explicit_index) properties.fail("material", "but eta or k are given, too; expected one or the other");
+    const std::optional<ConductorPreset> preset = conductor_preset(material);
+    if (!preset) properties.fail("material", "expected none or one of: " + joined(conductor_preset_names()));
+    result.eta = preset->eta;
+    result.k = preset->k;
+  }
+  result.perfect = material == "none" && !explicit_index;
+  result.eta = properties.rgb("eta", result.eta, kNotNegative);
+  result.k = properties.rgb("k", result.k, kNotNegative);
+  // Not in Mitsuba 3: the medium outside, as `extEta` of 0.6. Its default there was air; here it is vacuum, as in Mitsuba 3.
+  const float exterior = properties.has("ext_eta") ? read_ior(properties, "ext_eta", "vacuum") : 1.0f;
+  result.eta = result.eta / exterior;
+  result.k = result.k / exterior;
+  result.specular_reflectance = properties.rgb("specular_reflectance", Rgb(1), kUnitInterval);
+  return result;
+}
+
+PlasticDescription read_plastic(Properties& properties) {
+  PlasticDescription result;
+  result.eta = read_relative_ior(properties, "polypropylene");
+  result.diffuse_reflectance = properties.rgb("diffuse_reflectance", Rgb(0.5f), kUnitInterval);
+  result.specular_reflectance = properties.rgb("specular_reflectance", Rgb(1), kUnitInterval);
+  result.nonlinear = properties.boolean("nonlinear", false);
+  return result;
+}
+
+Roughness read_roughness(Properties& properties, bool anisotropic) {
+  constexpr float kSmallestAlpha = 1e-4f;  // Mitsuba raises smaller values to this, too
+  Roughness result;
+  const std::string distribution = properties.text("distribution", "beckmann");
+  if (distribution != "beckmann" && distribution != "ggx") properties.fail("distribution", "expected beckmann or ggx");
+  result.distribution = distribution == "ggx" ? MicrofacetDistribution::kGgx : MicrofacetDistribution::kBeckmann;
+  properties.ignore({"sample_visible"});
+
+  const float alpha = properties.number("alpha", 0.1f, kUnitInterval);
+  result.alpha_u = result.alpha_v = alpha;
+  if (anisotropic) {
+    if (properties.has("alpha_u") != properties.has("alpha_v")) properties.fail("alpha", "alpha_u and alpha_v must be given together");
+    if (properties.has("alpha") && properties.has("alpha_u")) properties.fail("alpha", "but alpha_u and alpha_v are given, too");
+    result.alpha_u = properties.number("alpha_u", alpha, kUnitInterval);
+    result.alpha_v = properties.number("alpha_v", alpha, kUnitInterval);
+  }
+  result.alpha_u = std::max(result.alpha_u, kSmallestAlpha);
+  result.alpha_v = std::max(result.alpha_v, kSmallestAlpha);
+  return result;
+}
+
+MaterialDescription read_simple(const PluginNode& node) {
+  check_no_children(node);
+  Properties properties(node);
+  MaterialDescription result;
+  if (node.type == "diffuse") {
+    result = DiffuseDescription{properties.rgb("reflectance", Rgb(0.5f), kUnitInterval)};
+  } else if (node.type == "dielectric") {
+    result = read_dielectric(properties);
+  } else if (node.type == "roughdielectric") {
+    const DielectricDescription dielectric = read_dielectric(properties);
+    if (dielectric.eta == 1) throw SceneError(node.place, title(node) + ": int_ior and ext_ior are equal, expected two different ones");
+    result = RoughDielectricDescription{dielectric, read_roughness(properties, true)};
+  } else if (node.type == "conductor") {
+    result = read_conductor(properties);
+  } else if (node.type == "roughconductor") {
+    result = RoughConductorDescription{read_conductor(properties), read_roughness(properties, true)};
+  } else if (node.type == "plastic") {
+    result = read_plastic(properties);
+  } else {
+    result = RoughPlasticDescription{read_plastic(properties), read_roughness(properties, false)};
+  }
+  properties.finish();
+  return result;
+}
+
+bool transmits(const MaterialDescription& material) {
+  return std::holds_alternative<DielectricDescription>(material) || std::holds_alternative<RoughDielectricDescription>(material);
+}
+
+}  // namespace
+
+int MaterialReader::read(const PluginNode& bsdf_or_reference) {
+  const PluginNode& node = bsdf_or_reference.kind == PluginKind::kReference ? referenced_bsdf(bsdf_or_reference, plugins_)
+                                                                           : bsdf_or_reference;
+  if (const auto known = indices_.find(&node); known != indices_.end()) return known->second;
+  if (!being_read_.insert(&node).second) throw SceneError(bsdf_or_reference.place, title(node) + " contains itself");
+  MaterialDescription material = node.type == "twosided" ? read_twosided(node) : read_simple(node);
+  being_read_.erase(&node);
+  materials_.push_back(std::move(material));
+  return indices_[&node] = static_cast<int>(materials_.size()) - 1;
+}
+
+int MaterialReader::diffuse(float reflectance) {
+  const auto [found, is_new] = greys_.emplace(reflectance, static_cast<int>(materials_.size()));
+  if (is_new) materials_.push_back(DiffuseDescription{Rgb(reflectance)});
+  return found->second;
+}
+
+MaterialDescription MaterialReader::read_twosided(const PluginNode& node) {
+  Properties(node).finish();
+  std::vector<int> sides;
+  for (const PluginNode& child : node.children) {
+    if (child.kind != PluginKind::kBsdf && child.kind != PluginKind::kReference) fail_nested(node, child, "one or two bsdfs");
+    int side = read(child);
+    const MaterialDescription& material = materials_[static_cast<std::size_t>(side)];
+    if (transmits(material)) throw SceneError(child.place, title(node) + " holds a material that transmits light, expected an opaque one");
+    // A twosided within a twosided is only ever seen from its front.
+    if (const auto* inner = std::get_if<TwosidedDescription>(&material)) side = inner->front;
+    sides.push_back(side);
+  }
+  if (sides.empty() || sides.size() > 2) {
+    throw SceneError(node.place, title(node) + " holds " + std::to_string(sides.size()) + " bsdfs, expected one or two");
+  }
+  return TwosidedDescription{sides.front(), sides.back()};
+}
+
+}  // namespace fluxfarm

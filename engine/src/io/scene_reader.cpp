@@ -1,0 +1,82 @@
+#include "io/scene_reader.h"
+
+#include <algorithm>
+
+#include "io/mitsuba_json.h"
+#include "io/properties.h"
+#include "io/read_emitter.h"
+#include "io/read_sensor.h"
+#include "io/read_shape.h"
+#include "io/text.h"
+#include "support/error.h"
+
+namespace fluxfarm {
+namespace {
+
+PluginNode read_tree(const Bundle& bundle, const SceneOverrides& overrides) {
+  const std::string extension = bundle.entry().extension().string();
+  if (extension == ".xml") return read_mitsuba_xml(bundle, overrides);
+  const std::string name = bundle.name(bundle.entry());
+  if (extension != ".json") throw SceneError(name, "has the extension " + in_quotes(extension) + ", expected .xml or .json");
+  if (!overrides.empty()) throw SceneError(name, "takes no value for $" + overrides.begin()->first + ": only XML scenes have such names");
+  return read_mitsuba_json(bundle);
+}
+
+// Materials that no shape uses must be right, too, but they are no part of the description.
+void check_unused_materials(const PluginNode& scene, const PluginsById& plugins, const MaterialReader& used) {
+  std::vector<MaterialDescription> scratch;
+  MaterialReader reader(plugins, scratch);
+  for (const PluginNode& child : scene.children) {
+    if (child.kind == PluginKind::kBsdf && !used.has_read(child)) reader.read(child);
+  }
+}
+
+bool has_light(const SceneDescription& scene) {
+  const bool shines = std::any_of(scene.shapes.begin(), scene.shapes.end(), [](const ShapeDescription& shape) {
+    return shape.emitted_radiance && !shape.emitted_radiance->is_black();
+  });
+  return shines || std::any_of(scene.emitters.begin(), scene.emitters.end(), [](const EmitterDescription& emitter) {
+           const auto* point = std::get_if<PointEmitterDescription>(&emitter);
+           return !(point ? point->intensity : std::get<ConstantEmitterDescription>(emitter).radiance).is_black();
+         });
+}
+
+SceneDescription build(const PluginNode& root, const Bundle& bundle) {
+  SceneDescription scene;
+  Properties(root).finish();
+  const PluginsById plugins = plugins_by_id(root);
+  MaterialReader materials(plugins, scene.materials);
+  const PluginNode* sensor = nullptr;
+  const PluginNode* integrator = nullptr;
+  for (const PluginNode& child : root.children) {
+    switch (child.kind) {
+      case PluginKind::kShape: scene.shapes.push_back(read_shape(child, bundle, materials, scene.warnings)); break;
+      case PluginKind::kEmitter: scene.emitters.push_back(read_scene_emitter(child)); break;
+      case PluginKind::kBsdf: break;  // read when a shape refers to it
+      case PluginKind::kSensor:
+        if (sensor) scene.warnings.push_back(child.place + ": the scene has more than one sensor; the one at " + sensor->place + " is used");
+        if (!sensor) sensor = &child;
+        break;
+      case PluginKind::kIntegrator:
+        if (integrator) throw SceneError(child.place, "the scene has a second integrator; the first is at " + integrator->place);
+        integrator = &child;
+        break;
+      default: fail_nested(root, child, "integrator, sensor, bsdf, shape and emitter");
+    }
+  }
+  check_unused_materials(root, plugins, materials);
+  if (!sensor) throw SceneError(root.place, "the scene has no sensor, expected one, as in <sensor type=\"perspective\">");
+  read_sensor(*sensor, scene);
+  if (integrator) scene.method = read_integrator(*integrator);
+  if (!has_light(scene)) scene.warnings.push_back(root.place + ": no light: the image will be black");
+  return scene;
+}
+
+}  // namespace
+
+SceneDescription read_scene(const std::filesystem::path& folder, const std::filesystem::path& entry, const SceneOverrides& overrides) {
+  const Bundle bundle(folder, entry);
+  return build(read_tree(bundle, overrides), bundle);
+}
+
+}  // namespace fluxfarm

@@ -1,0 +1,161 @@
+// Parameters of materials, shapes and emitters: defaults and meanings as in Mitsuba 3.6.
+#include "io/scene_folder.h"
+
+namespace fluxfarm {
+namespace {
+
+// The material of a sphere with that bsdf inside.
+MaterialDescription material(const SceneFolder& folder, const std::string& bsdf) {
+  const SceneDescription scene = folder.read_xml("<shape type=\"sphere\">" + bsdf + "</shape>");
+  return scene.materials.at(static_cast<std::size_t>(scene.shapes.at(0).material));
+}
+
+std::string material_error(const SceneFolder& folder, const std::string& bsdf) {
+  return error_of([&] { material(folder, bsdf); });
+}
+
+TEST(Materials, DefaultsAreMitsubas) {
+  const SceneFolder folder;
+  EXPECT_EQ(std::get<DiffuseDescription>(material(folder, "<bsdf type=\"diffuse\"/>")).reflectance, Rgb(0.5f));
+  EXPECT_NEAR(std::get<DielectricDescription>(material(folder, "<bsdf type=\"dielectric\"/>")).eta, 1.5041833f, 1e-6f);
+  EXPECT_NEAR(std::get<PlasticDescription>(material(folder, "<bsdf type=\"plastic\"/>")).eta, 1.4895873f, 1e-6f);
+  EXPECT_TRUE(std::get<ConductorDescription>(material(folder, "<bsdf type=\"conductor\"/>")).perfect);
+  const auto rough = std::get<RoughConductorDescription>(material(folder, "<bsdf type=\"roughconductor\"/>"));
+  EXPECT_EQ(rough.roughness.distribution, MicrofacetDistribution::kBeckmann);
+  EXPECT_FLOAT_EQ(rough.roughness.alpha_u, 0.1f);
+  EXPECT_FLOAT_EQ(std::get<RoughPlasticDescription>(material(folder, "<bsdf type=\"roughplastic\"/>")).roughness.alpha_v, 0.1f);
+}
+
+TEST(Materials, IndicesMayBeNumbersOrNames) {
+  const SceneFolder folder;
+  const std::string bsdf = "<bsdf type=\"dielectric\"><string name=\"int_ior\" value=\"Diamond\"/><float name=\"ext_ior\" value=\"2\"/></bsdf>";
+  EXPECT_FLOAT_EQ(std::get<DielectricDescription>(material(folder, bsdf)).eta, 2.419f / 2);
+  EXPECT_EQ(material_error(folder, "<bsdf type=\"dielectric\"><string name=\"int_ior\" value=\"jelly\"/></bsdf>")
+                .find("scene.xml:2: bsdf \"dielectric\": int_ior = \"jelly\", expected a number greater than 0 or one of: vacuum, "),
+            0u);
+}
+
+TEST(Materials, ConductorsTakeAMaterialOrAnIndex) {
+  const SceneFolder folder;
+  const auto gold = std::get<ConductorDescription>(material(folder, "<bsdf type=\"conductor\"><string name=\"material\" value=\"Au\"/></bsdf>"));
+  EXPECT_FALSE(gold.perfect);
+  EXPECT_NEAR(gold.eta.r, 0.143036f, 1e-6f);
+  EXPECT_NEAR(gold.k.b, 1.60336f, 1e-5f);
+  const auto copper = std::get<ConductorDescription>(material(
+      folder, "<bsdf type=\"conductor\"><rgb name=\"eta\" value=\"0.2 0.9 1.1\"/><rgb name=\"k\" value=\"3.9, 2.4, 2.1\"/></bsdf>"));
+  EXPECT_EQ(copper.eta, Rgb(0.2f, 0.9f, 1.1f));
+  EXPECT_EQ(copper.k, Rgb(3.9f, 2.4f, 2.1f));
+  EXPECT_EQ(material_error(folder, "<bsdf type=\"conductor\"><string name=\"material\" value=\"Au\"/><float name=\"k\" value=\"1\"/></bsdf>"),
+            "scene.xml:2: bsdf \"conductor\": material = \"Au\", but eta or k are given, too; expected one or the other");
+}
+
+TEST(Materials, RoughnessIsCheckedAndKeptAboveZero) {
+  const SceneFolder folder;
+  const auto alpha = [](const std::string& value) {
+    return "<bsdf type=\"roughconductor\"><float name=\"alpha\" value=\"" + value + "\"/></bsdf>";
+  };
+  EXPECT_EQ(material_error(folder, alpha("1.7")), "scene.xml:2: bsdf \"roughconductor\": alpha = 1.7, expected a number in [0, 1]");
+  EXPECT_FLOAT_EQ(std::get<RoughConductorDescription>(material(folder, alpha("0"))).roughness.alpha_u, 1e-4f);
+  EXPECT_EQ(material_error(folder, "<bsdf type=\"roughplastic\"><string name=\"distribution\" value=\"phong\"/></bsdf>"),
+            "scene.xml:2: bsdf \"roughplastic\": distribution = \"phong\", expected beckmann or ggx");
+}
+
+TEST(Materials, ReflectancesLieBetweenZeroAndOne) {
+  const SceneFolder folder;
+  EXPECT_EQ(material_error(folder, "<bsdf type=\"diffuse\"><rgb name=\"reflectance\" value=\"0.5, 1.2, 0\"/></bsdf>"),
+            "scene.xml:2: bsdf \"diffuse\": reflectance = 0.5, 1.2, 0, expected numbers in [0, 1]");
+  EXPECT_EQ(material_error(folder, "<bsdf type=\"diffuse\"><spectrum name=\"reflectance\" value=\"400:0.5, 700:0.7\"/></bsdf>"),
+            "scene.xml:2: <spectrum> value = \"400:0.5, 700:0.7\": spectra by wavelength are not supported, expected one number, or use <rgb>");
+  EXPECT_EQ(material_error(folder, "<bsdf type=\"diffuse\">\n<texture type=\"bitmap\" name=\"reflectance\"/></bsdf>"),
+            "scene.xml:3: unknown plugin: texture \"bitmap\"; no texture is supported yet");
+}
+
+TEST(Materials, TwosidedTakesOneOrTwoOpaqueMaterials) {
+  const SceneFolder folder;
+  const std::string diffuse = "<bsdf type=\"diffuse\"/>", glass = "<bsdf type=\"dielectric\"/>";
+  const auto twosided = [](const std::string& inside) { return "<bsdf type=\"twosided\">" + inside + "</bsdf>"; };
+  const auto one = std::get<TwosidedDescription>(material(folder, twosided(diffuse)));
+  EXPECT_EQ(one.front, one.back);
+  const auto two = std::get<TwosidedDescription>(material(folder, twosided(diffuse + "<bsdf type=\"plastic\"/>")));
+  EXPECT_EQ(two.front, 0);
+  EXPECT_EQ(two.back, 1);
+  const auto nested = std::get<TwosidedDescription>(material(folder, twosided(twosided(diffuse))));
+  EXPECT_EQ(nested.front, 0);
+  EXPECT_EQ(material_error(folder, twosided("")), "scene.xml:2: bsdf \"twosided\" holds 0 bsdfs, expected one or two");
+  EXPECT_EQ(material_error(folder, twosided(glass)),
+            "scene.xml:2: bsdf \"twosided\" holds a material that transmits light, expected an opaque one");
+}
+
+TEST(Materials, ThatNoShapeUsesAreCheckedButLeftOut) {
+  const SceneFolder folder;
+  EXPECT_TRUE(folder.read_xml("<bsdf type=\"dielectric\" id=\"unused\"/>").materials.empty());
+  EXPECT_NE(error_of([&] { folder.read_xml("<bsdf type=\"dielectric\" id=\"unused\"><float name=\"int_ior\" value=\"-1\"/></bsdf>"); })
+                .find("int_ior = -1, expected a number greater than 0"),
+            std::string::npos);
+}
+
+TEST(Shapes, WithoutABsdfAreGreyAndLightsBlack) {
+  const SceneFolder folder;
+  EXPECT_EQ(std::get<DiffuseDescription>(material(folder, "")).reflectance, Rgb(0.5f));
+  EXPECT_EQ(std::get<DiffuseDescription>(material(folder, "<emitter type=\"area\"/>")).reflectance, Rgb(0.0f));
+}
+
+TEST(Shapes, SpheresTakeUniformScaleAndTurnInsideOutWhenMirrored) {
+  const SceneFolder folder;
+  const SceneDescription scene = folder.read_xml(
+      "<shape type=\"sphere\"><point name=\"center\" value=\"1 0 0\"/><float name=\"radius\" value=\"3\"/>"
+      "<transform name=\"to_world\"><scale value=\"2\"/></transform></shape>"
+      "<shape type=\"sphere\"><transform name=\"to_world\"><scale x=\"-1\"/></transform></shape>");
+  EXPECT_EQ(std::get<SphereDescription>(scene.shapes[0].geometry).center, (Vec3f{2, 0, 0}));
+  EXPECT_FLOAT_EQ(std::get<SphereDescription>(scene.shapes[0].geometry).radius, 6);
+  EXPECT_FALSE(scene.shapes[0].flip_normals);
+  EXPECT_TRUE(scene.shapes[1].flip_normals);
+}
+
+TEST(Shapes, DisksStayRoundAndRectanglesKeepAnArea) {
+  const SceneFolder folder;
+  const auto error = [&](const std::string& type, const std::string& step) {
+    return error_of([&] { folder.read_xml("<shape type=\"" + type + "\"><transform name=\"to_world\">" + step + "</transform></shape>"); });
+  };
+  EXPECT_NE(error("disk", "<scale x=\"2\"/>").find("makes the disk an ellipse or a point"), std::string::npos);
+  EXPECT_NE(error("rectangle", "<scale x=\"0\"/>").find("gives the rectangle no area"), std::string::npos);
+  EXPECT_EQ(folder.read_xml("<shape type=\"rectangle\"><transform name=\"to_world\"><scale z=\"0\"/></transform></shape>").shapes.size(), 1u);
+}
+
+TEST(Emitters, UniformSpectraHaveTheColourOfEqualEnergyWhite) {
+  const SceneFolder folder;
+  const auto intensity = [&](const std::string& value) {
+    const SceneDescription scene = folder.read_xml("<emitter type=\"point\">" + value + "</emitter>");
+    return std::get<PointEmitterDescription>(scene.emitters.at(1)).intensity;
+  };
+  EXPECT_EQ(intensity("<rgb name=\"intensity\" value=\"5\"/>"), Rgb(5));
+  EXPECT_EQ(intensity("<float name=\"intensity\" value=\"5\"/>"), Rgb(5));
+  const Rgb white = intensity("<spectrum name=\"intensity\" value=\"5\"/>");  // Mitsuba 3.6.4: 6.02397, 4.74146, 4.54458
+  EXPECT_NEAR(white.r, 6.02397f, 1e-5f);
+  EXPECT_NEAR(white.g, 4.74146f, 1e-5f);
+  EXPECT_NEAR(white.b, 4.54458f, 1e-5f);
+}
+
+TEST(Emitters, StandWhereTheyBelong) {
+  const SceneFolder folder;
+  EXPECT_EQ(error_of([&] { folder.read_xml("<emitter type=\"area\"/>"); }), "scene.xml:2: emitter \"area\" stands by itself, expected it inside a shape");
+  EXPECT_EQ(error_of([&] { folder.read_xml("<shape type=\"sphere\"><emitter type=\"point\"/></shape>"); }),
+            "scene.xml:2: emitter \"point\" stands inside a shape \"sphere\", expected it directly in the scene");
+  EXPECT_EQ(error_of([&] { folder.read_xml("<emitter type=\"constant\"><rgb name=\"radiance\" value=\"-1\"/></emitter>"); }),
+            "scene.xml:2: emitter \"constant\": radiance = -1, -1, -1, expected numbers of at least 0");
+}
+
+TEST(Cameras, MayBeMirroredButNotScaled) {
+  const SceneFolder folder;
+  const auto camera = [&](const std::string& inside) {
+    return folder.read_whole_xml("<scene version=\"3.0.0\"><sensor type=\"perspective\">" + inside + "</sensor></scene>").camera;
+  };
+  EXPECT_LT(camera("<transform name=\"to_world\"><scale x=\"-1\"/></transform>").to_world.determinant(), 0);
+  EXPECT_NE(error_of([&] { camera("<transform name=\"to_world\"><scale value=\"2\"/></transform>"); }).find("scales or shears the camera"), std::string::npos);
+  EXPECT_NE(error_of([&] { camera("<float name=\"fov\" value=\"180\"/>"); }).find("fov = 180, expected a number in (0, 180)"), std::string::npos);
+  EXPECT_NE(error_of([&] { camera("<float name=\"near_clip\" value=\"2\"/><float name=\"far_clip\" value=\"1\"/>"); }).find("expected more than near_clip = 2"), std::string::npos);
+  EXPECT_NE(error_of([&] { camera("<float name=\"principal_point_offset_x\" value=\"0.1\"/>"); }).find("is not supported yet, expected 0"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace fluxfarm
