@@ -32,7 +32,7 @@ PNG_MAGIC = b"\x89PNG\r\n\x1a\n"
 
 
 class Cancelled(Exception):
-    pass
+    """The service does not want this request's result any more."""
 
 
 class FakeEngine:
@@ -75,7 +75,7 @@ class FakeEngine:
 
     def load_scene(self, request_id: int, load: pb.LoadScene) -> None:
         text = (Path(load.folder) / load.entry).read_text(errors="replace")
-        told = {verb: argument for verb, argument in re.findall(r"fake: *(\w+) *(.*?) *(?:-->|$)", text, re.MULTILINE)}
+        told = dict(re.findall(r"fake: *(\w+) *(.*?) *(?:-->|$)", text, re.MULTILINE))
         if "fail" in told:
             kind, _, message = told["fail"].partition(" ")
             return self.fail(request_id, pb.FailureKind.Value("FAILURE_KIND_" + kind), message)
@@ -169,10 +169,14 @@ def append(path: str, text: bytes) -> None:
 
 def main() -> None:
     parser = argparse.ArgumentParser()
-    parser.add_argument("command", choices=["worker"])
+    parser.add_argument("command", choices=["worker", "info"])
     parser.add_argument("--fd", type=int)
     parser.add_argument("--threads", type=int)
+    parser.add_argument("--json", action="store_true")
     arguments = parser.parse_args()
+    if arguments.command == "info":
+        print('{"build": "fake-1", "protocol_version": 1}')
+        return
     FakeEngine(socket.socket(fileno=arguments.fd), arguments.threads).run()
 
 

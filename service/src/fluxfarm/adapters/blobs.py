@@ -27,7 +27,7 @@ from fluxfarm.errors import DigestMismatch, TooLarge
 
 T = TypeVar("T")
 BUFFER_BYTES = 1 << 20
-SYNC_THREADS = 8
+SYNC_THREADS = 16
 BUILTIN_ENTRY = "scene.xml"
 
 

@@ -109,9 +109,8 @@ def draw(points: list[tuple[float, float]]) -> str:
         up = (math.log10(y) - y_low) / (y_high - y_low)
         return MARGIN + across * (WIDTH - 2 * MARGIN), HEIGHT - MARGIN - up * (HEIGHT - 2 * MARGIN)
 
-    parts = [
-        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {WIDTH} {HEIGHT}" font-family="sans-serif" font-size="11">'
-    ]
+    box = f'viewBox="0 0 {WIDTH} {HEIGHT}"'
+    parts = [f'<svg xmlns="http://www.w3.org/2000/svg" {box} font-family="sans-serif" font-size="11">']
     parts.append(f'<rect width="{WIDTH}" height="{HEIGHT}" fill="white"/>')
     for power in range(x_low, x_high + 1):
         x, _ = place(10.0**power, 10.0**y_low)

@@ -1,5 +1,5 @@
 """The `fluxfarm` command."""
 
+from fluxfarm.cli.commands import main
 
-def main() -> None:
-    """Entry point."""
+__all__ = ["main"]

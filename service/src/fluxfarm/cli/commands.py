@@ -1,0 +1,243 @@
+"""The commands and their options. Everything slow to load is imported by the command that needs it."""
+
+import json
+import os
+import sys
+import tempfile
+import uuid
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import replace
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from fluxfarm.cli.exits import EXIT_SENTENCES, CommandError, Exit
+from fluxfarm.cli.request import JobOptions, find_scene, job_body, option_members
+from fluxfarm.errors import FarmError, StartError
+from fluxfarm.settings import PREFIX, Settings, from_environment
+
+EXITS = "Exit codes: " + "; ".join(f"{code.value} {text}" for code, text in EXIT_SENTENCES.items()) + "."
+app = typer.Typer(
+    help=f"Render scenes, alone or with a Fluxfarm service.\n\n{EXITS}",
+    add_completion=False,
+    no_args_is_help=True,
+    pretty_exceptions_enable=False,
+    rich_markup_mode=None,
+)
+
+SceneArgument = Annotated[str, typer.Argument(metavar="SCENE", help="Scene file (.xml, .json) or built-in name.")]
+JobArgument = Annotated[str, typer.Argument(metavar="JOB", help="Id of the job.")]
+OutOption = Annotated[Path, typer.Option("-o", "--out", help="OpenEXR file to write.")]
+PngOption = Annotated[Path | None, typer.Option("--png", help="Also write a PNG for the eye.")]
+ServerOption = Annotated[
+    str | None, typer.Option("--server", envvar=PREFIX + "SERVER", help="Address of a service, http://HOST:PORT.")
+]
+RelErrorOption = Annotated[float | None, typer.Option("--rel-error", help="Goal: relative error, for example 0.05.")]
+SppOption = Annotated[int | None, typer.Option("--spp", help="Goal: samples per pixel.")]
+SecondsOption = Annotated[float | None, typer.Option("--seconds", help="Goal: seconds of rendering.")]
+IntegratorOption = Annotated[
+    str | None, typer.Option("--integrator", help="auto, path, photon, photon-progressive or irradiance-cache.")
+]
+SizeOption = Annotated[str | None, typer.Option("--size", metavar="WxH", help="Frame size in pixels.")]
+CropOption = Annotated[str | None, typer.Option("--crop", metavar="X,Y,W,H", help="Part of the frame to render.")]
+SeedOption = Annotated[int, typer.Option("--seed", help="Another seed gives an independent image.")]
+PriorityOption = Annotated[int, typer.Option("--priority", help="Higher goes first.")]
+
+
+def main() -> None:
+    """Run the command line; every error becomes a message and an exit code."""
+    try:
+        app()
+    except CommandError as error:
+        code, message = error.code, str(error)
+    except StartError as error:
+        code, message = Exit.UNREACHABLE, str(error)
+    except FarmError as error:
+        code, message = Exit.BAD_INPUT, str(error)
+    except KeyboardInterrupt:
+        code, message = Exit.INTERRUPTED, "interrupted"
+    except BrokenPipeError:
+        os._exit(Exit.OK)
+    else:
+        return
+    print(f"fluxfarm: {message}", file=sys.stderr)
+    sys.exit(code)
+
+
+@app.command()
+def render(
+    scene: SceneArgument,
+    out: OutOption,
+    rel_error: RelErrorOption = None,
+    spp: SppOption = None,
+    seconds: SecondsOption = None,
+    integrator: IntegratorOption = None,
+    size: SizeOption = None,
+    crop: CropOption = None,
+    png: PngOption = None,
+    seed: SeedOption = 0,
+    threads: Annotated[int | None, typer.Option("--threads", help="Threads of each engine process.")] = None,
+    workers: Annotated[int | None, typer.Option("--workers", help="Engine processes.")] = None,
+    server: ServerOption = None,
+) -> None:
+    """Render SCENE to an OpenEXR file. Without a service, one runs inside this command for as long as it takes."""
+    options = JobOptions(rel_error, spp, seconds, integrator, size, crop, seed)
+    option_members(options)
+    for path in (out, png):
+        if path is not None and not path.absolute().parent.is_dir():
+            raise CommandError(Exit.BAD_INPUT, f"{path}: the folder {path.absolute().parent} is not there")
+    found = find_scene(scene)
+    from fluxfarm.cli.client import ServiceClient
+    from fluxfarm.cli.follow import describe, follow, outcome
+
+    with _service(server, threads, workers) as url, ServiceClient(url) as client:
+        job = client.submit(job_body(client, found, options), uuid.uuid4().hex)
+        try:
+            job = follow(client, job["id"])
+        except KeyboardInterrupt:
+            client.call("POST", f"/v1/jobs/{job['id']}:cancel")
+            raise
+        outcome(job)
+        _fetch(client, job["id"], out, png, None)
+    print(f"{out}: {describe(job)}")
+
+
+@app.command()
+def submit(
+    scene: SceneArgument,
+    rel_error: RelErrorOption = None,
+    spp: SppOption = None,
+    seconds: SecondsOption = None,
+    integrator: IntegratorOption = None,
+    size: SizeOption = None,
+    crop: CropOption = None,
+    seed: SeedOption = 0,
+    priority: PriorityOption = 0,
+    name: Annotated[str | None, typer.Option("--name", help="For people.")] = None,
+    server: ServerOption = None,
+) -> None:
+    """Submit SCENE to a service and print the id of the job."""
+    from fluxfarm.cli.client import ServiceClient
+
+    options = JobOptions(rel_error, spp, seconds, integrator, size, crop, seed, priority, name)
+    found = find_scene(scene)
+    with ServiceClient(_address(server)) as client:
+        print(client.submit(job_body(client, found, options), uuid.uuid4().hex)["id"])
+
+
+@app.command()
+def watch(job_id: JobArgument, server: ServerOption = None) -> None:
+    """Follow a job until it ends."""
+    from fluxfarm.cli.client import ServiceClient
+    from fluxfarm.cli.follow import follow, outcome
+
+    with ServiceClient(_address(server)) as client:
+        outcome(follow(client, job_id))
+
+
+@app.command()
+def get(
+    job_id: JobArgument,
+    out: OutOption,
+    png: PngOption = None,
+    revision: Annotated[int | None, typer.Option("--revision", help="An older revision.")] = None,
+    server: ServerOption = None,
+) -> None:
+    """Fetch the newest image of a job, finished or not."""
+    from fluxfarm.cli.client import ServiceClient
+
+    with ServiceClient(_address(server)) as client:
+        _fetch(client, job_id, out, png, revision)
+    print(out)
+
+
+@app.command()
+def cancel(job_id: JobArgument, server: ServerOption = None) -> None:
+    """Give a job up."""
+    from fluxfarm.cli.client import ServiceClient
+
+    with ServiceClient(_address(server)) as client:
+        print(client.call("POST", f"/v1/jobs/{job_id}:cancel")["state"])
+
+
+@app.command("list")
+def list_jobs(
+    as_json: Annotated[bool, typer.Option("--json", help="The service's JSON.")] = False, server: ServerOption = None
+) -> None:
+    """List jobs, newest first."""
+    from fluxfarm.cli.client import ServiceClient
+    from fluxfarm.cli.follow import describe
+
+    with ServiceClient(_address(server)) as client:
+        jobs: list[dict[str, Any]] = client.call("GET", "/v1/jobs")["jobs"]
+    if as_json:
+        print(json.dumps(jobs, indent=2))
+        return
+    for job in jobs:
+        print(f"{job['id']}  {job['created_at']}  {job['name'] or '-'}  {describe(job)}")
+
+
+@app.command()
+def serve(
+    host: Annotated[str | None, typer.Option("--host", help="Address to listen on.")] = None,
+    port: Annotated[int | None, typer.Option("--port", help="Port to listen on; 0 takes a free one.")] = None,
+    data: Annotated[Path | None, typer.Option("--data", help="Data folder.")] = None,
+    workers: Annotated[int | None, typer.Option("--workers", help="Engine processes.")] = None,
+    threads: Annotated[int | None, typer.Option("--threads", help="Threads of each engine process.")] = None,
+) -> None:
+    """Run the service until Ctrl-C or SIGTERM. Every setting is also a FLUXFARM_ variable of the environment."""
+    from fluxfarm.cli.serving import run
+
+    run(_changed(from_environment(), host=host, port=port, data=data, workers=workers, threads=threads))
+
+
+@app.command()
+def doctor() -> None:
+    """Check that a service could run here."""
+    from fluxfarm.cli.doctor import examine
+
+    marks = {True: "ok", None: "note", False: "FAILED"}
+    findings = list(examine(from_environment()))
+    for finding in findings:
+        print(f"{marks[finding.ok]:7} {finding.name}: {finding.text}")
+    if any(finding.ok is False for finding in findings):
+        raise CommandError(Exit.UNREACHABLE, "a service cannot run here; see the lines marked FAILED")
+
+
+def _changed(settings: Settings, **options: Any) -> Settings:
+    """The settings with the options that were given; checked like variables of the environment."""
+    given = {f"{PREFIX}{name.upper()}": str(value) for name, value in options.items() if value is not None}
+    return from_environment({**os.environ, **given}) if given else settings
+
+
+def _address(server: str | None) -> str:
+    """The service to talk to: as told, else where `fluxfarm serve` listens by default."""
+    settings = from_environment()
+    return server or f"http://{settings.host}:{settings.port}"
+
+
+@contextmanager
+def _service(server: str | None, threads: int | None, workers: int | None) -> Iterator[str]:
+    """Address of the service to render with; an embedded one, with a data folder that is removed, if none is told."""
+    if server is not None:
+        if threads is not None or workers is not None:
+            raise CommandError(Exit.BAD_INPUT, "--threads and --workers are settings of the service named by --server")
+        yield server
+        return
+    from fluxfarm import logs
+    from fluxfarm.cli.embedded import EmbeddedService
+
+    logs.set_up(os.environ.get(PREFIX + "LOG_LEVEL") or "critical")
+    with tempfile.TemporaryDirectory(prefix="fluxfarm-", ignore_cleanup_errors=True) as folder:
+        settings = _changed(from_environment(), threads=threads, workers=workers)
+        with EmbeddedService(replace(settings, data=Path(folder), port=0)) as service:
+            yield service.url
+
+
+def _fetch(client: Any, job_id: str, out: Path, png: Path | None, revision: int | None) -> None:
+    part = "" if revision is None else f"/revisions/{revision}"
+    client.download(f"/v1/jobs/{job_id}{part}/image.exr", out)
+    if png is not None:
+        client.download(f"/v1/jobs/{job_id}/preview.png", png)
