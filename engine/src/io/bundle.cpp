@@ -18,7 +18,8 @@ bool lies_inside(const fs::path& path, const fs::path& folder) {
 // `filename` below `base`, with every ".." and symbolic link followed; inside `folder` or an error.
 fs::path find_inside(const fs::path& folder, const fs::path& base, const std::string& filename, const std::string& place) {
   if (filename.empty()) throw SceneError(place, "the name of a file is empty");
-  if (filename.find('\0') != std::string::npos) throw SceneError(place, "file " + in_quotes(filename) + " has a zero byte in its name");
+  if (filename.find('\0') != std::string::npos)
+    throw SceneError(place, "file " + in_quotes(filename) + " has a zero byte in its name");
   std::error_code error;
   const fs::path path = fs::weakly_canonical(base / filename, error);
   if (error) throw SceneError(place, "file " + in_quotes(filename) + " cannot be found: " + error.message());

@@ -1,6 +1,6 @@
 // Source: measured spectra of the Mitsuba 3.6.4 distribution (SOPRA and Palik tables), converted there to linear Rec.709 by
-// mitsuba.load_dict({"type": "conductor", "material": NAME}) in the variant scalar_rgb; six significant digits. Channels outside the
-// gamut are 0, as there.
+// mitsuba.load_dict({"type": "conductor", "material": NAME}) in the variant scalar_rgb; six significant digits. Channels
+// outside the gamut are 0, as there.
 #include "io/conductor_presets.h"
 
 #include <iterator>

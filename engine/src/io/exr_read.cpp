@@ -19,9 +19,12 @@ void read_attributes(const Imf::Header& header, Image& image) {
   for (auto it = header.begin(); it != header.end(); ++it) {
     const std::string name = it.name();
     if (is_own(name)) continue;
-    if (const auto* text = dynamic_cast<const Imf::StringAttribute*>(&it.attribute())) image.attributes.emplace_back(name, text->value());
-    if (const auto* number = dynamic_cast<const Imf::FloatAttribute*>(&it.attribute())) image.attributes.emplace_back(name, number->value());
-    if (const auto* integer = dynamic_cast<const Imf::IntAttribute*>(&it.attribute())) image.attributes.emplace_back(name, integer->value());
+    if (const auto* text = dynamic_cast<const Imf::StringAttribute*>(&it.attribute()))
+      image.attributes.emplace_back(name, text->value());
+    if (const auto* number = dynamic_cast<const Imf::FloatAttribute*>(&it.attribute()))
+      image.attributes.emplace_back(name, number->value());
+    if (const auto* integer = dynamic_cast<const Imf::IntAttribute*>(&it.attribute()))
+      image.attributes.emplace_back(name, integer->value());
   }
 }
 
@@ -49,7 +52,8 @@ Image read(const std::filesystem::path& path) {
   const PixelRect& rect = image.data_window;
   Imf::FrameBuffer buffer;
   for (ImageChannel& channel : image.channels) {
-    buffer.insert(channel.name, Imf::Slice::Make(Imf::FLOAT, channel.values.data(), Imath::V2i(rect.x, rect.y), rect.width, rect.height));
+    buffer.insert(channel.name,
+                  Imf::Slice::Make(Imf::FLOAT, channel.values.data(), Imath::V2i(rect.x, rect.y), rect.width, rect.height));
   }
   file.setFrameBuffer(buffer);
   file.readPixels(rect.y, rect.y + rect.height - 1);

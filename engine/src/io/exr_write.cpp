@@ -36,7 +36,8 @@ Imf::FrameBuffer make_frame_buffer(const Image& image) {
   Imf::FrameBuffer buffer;
   for (const ImageChannel& channel : image.channels) {
     // The slice's base is where pixel (0, 0) of the frame would lie. OpenEXR wants a char*; writing does not change the values.
-    buffer.insert(channel.name, Imf::Slice::Make(Imf::FLOAT, channel.values.data(), Imath::V2i(rect.x, rect.y), rect.width, rect.height));
+    buffer.insert(channel.name,
+                  Imf::Slice::Make(Imf::FLOAT, channel.values.data(), Imath::V2i(rect.x, rect.y), rect.width, rect.height));
   }
   return buffer;
 }
@@ -46,7 +47,8 @@ Imf::FrameBuffer make_frame_buffer(const Image& image) {
 void write_exr(const std::filesystem::path& path, const Image& image) {
   FLUXFARM_CHECK(!image.data_window.empty() && image.width > 0 && image.height > 0, "an EXR needs pixels");
   for (const ImageChannel& channel : image.channels) {
-    FLUXFARM_CHECK(channel.values.size() == static_cast<std::size_t>(image.data_window.pixels()), "a channel covers the data window");
+    FLUXFARM_CHECK(channel.values.size() == static_cast<std::size_t>(image.data_window.pixels()),
+                   "a channel covers the data window");
   }
   try {
     Imf::OutputFile file(path.c_str(), make_header(image), 0);  // 0: no threads of its own

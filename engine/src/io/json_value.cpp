@@ -32,6 +32,8 @@ class Builder {
 
   bool key(std::string& name) {
     Level& level = open_.back();
+    if (name.size() > kMaxNameLength)
+      throw SceneError(name_ + ": " + path(), "the name " + in_quotes(name) + " of a member is too long");
     level.key = name;
     if (!level.keys.insert(name).second) throw SceneError(name_ + ": " + path(), "the member occurs twice");
     return true;
@@ -46,7 +48,8 @@ class Builder {
     // nlohmann's text reads "[json.exception.parse_error.101] parse error at line 1, column 2: what": keep what.
     std::string what = error.what();
     if (const std::size_t tail = what.find(": "); tail != std::string::npos) what = what.substr(tail + 2);
-    throw SceneError(name_ + ":" + std::to_string(line), "column " + std::to_string(column) + ": is not JSON: " + what);
+    throw SceneError(name_ + ":" + std::to_string(line),
+                     "column " + std::to_string(column) + ": is not JSON: " + printable(what));
   }
 
   JsonValue result() { return std::move(result_); }
@@ -60,7 +63,8 @@ class Builder {
 
   bool open(JsonValue value) {
     if (open_.size() >= static_cast<std::size_t>(kMaxNesting)) {
-      throw SceneError(name_ + ": " + path(), "objects and arrays are nested deeper than " + std::to_string(kMaxNesting) + " levels");
+      throw SceneError(name_ + ": " + path(),
+                       "objects and arrays are nested deeper than " + std::to_string(kMaxNesting) + " levels");
     }
     open_.push_back({std::move(value), {}, {}});
     return true;

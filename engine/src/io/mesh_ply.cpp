@@ -117,7 +117,8 @@ void skip_element(PlyRows& rows, const PlyHeader& header, const PlyElement& elem
 
 // Places of the texture coordinates among the properties, or -1.
 std::array<int, 2> find_uvs(const PlyElement& vertex) {
-  constexpr std::pair<const char*, const char*> kNames[] = {{"u", "v"}, {"s", "t"}, {"texture_u", "texture_v"}, {"texture_s", "texture_t"}};
+  constexpr std::pair<const char*, const char*> kNames[] = {
+      {"u", "v"}, {"s", "t"}, {"texture_u", "texture_v"}, {"texture_s", "texture_t"}};
   for (const auto& [u, v] : kNames) {
     if (vertex.find(u) >= 0 && vertex.find(v) >= 0) return {vertex.find(u), vertex.find(v)};
   }
@@ -189,7 +190,8 @@ RawMesh parse_ply(const std::string& file, const std::string& name) {
   RawMesh mesh;
   mesh.name = name;
   PlyRows rows(file, header, name);
-  const auto vertex = std::find_if(header.elements.begin(), header.elements.end(), [](const PlyElement& e) { return e.name == "vertex"; });
+  const auto vertex =
+      std::find_if(header.elements.begin(), header.elements.end(), [](const PlyElement& e) { return e.name == "vertex"; });
   if (vertex == header.elements.end() || vertex->count == 0) rows.fail("has no vertices");
   for (const PlyElement& element : header.elements) {
     check_count(element, header, rows);

@@ -58,7 +58,8 @@ PluginNode read_plugin(const JsonValue& json, const std::string& place) {
   const std::string& type = type_of(json, place);
   if (type == "ref") return read_reference(json, place);
   const std::optional<PluginKind> kind = kind_of_type(type);
-  if (!kind || *kind == PluginKind::kScene) throw SceneError(place, "unknown plugin " + in_quotes(type) + "; engine/src/io/README.md lists the known ones");
+  if (!kind || *kind == PluginKind::kScene)
+    throw SceneError(place, "unknown plugin " + in_quotes(type) + "; engine/src/io/README.md lists the known ones");
   PluginNode node;
   node.kind = *kind;
   node.type = type;
@@ -74,7 +75,8 @@ PluginNode read_mitsuba_json(const Bundle& bundle) {
   const std::string name = bundle.name(bundle.entry());
   const JsonValue json = parse_json(read_file(bundle.entry(), name, kMaxSceneTextBytes), name);
   if (!json.object()) throw SceneError(name, "is " + described(json) + ", expected an object with \"type\": \"scene\"");
-  if (type_of(json, name) != "scene") throw SceneError(name, "the outermost type is " + in_quotes(type_of(json, name)) + ", expected \"scene\"");
+  if (type_of(json, name) != "scene")
+    throw SceneError(name, "the outermost type is " + in_quotes(type_of(json, name)) + ", expected \"scene\"");
   PluginNode scene;
   scene.type = "scene";
   scene.place = name;

@@ -15,7 +15,8 @@ namespace {
 
 bool is_name_character(char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_'; }
 
-// camelCase, as files before version 2 write parameters, to the underscores of Mitsuba 3: intIOR -> int_ior, toWorld -> to_world.
+// camelCase, as files before version 2 write parameters, to the underscores of Mitsuba 3: intIOR -> int_ior, toWorld ->
+// to_world.
 std::string with_underscores(const std::string& camel) {
   std::string result;
   for (std::size_t i = 0; i < camel.size(); ++i) {
@@ -78,7 +79,8 @@ class XmlSceneReader {
     if (!version) return otherwise;
     const std::string text = version.value();
     const std::optional<std::int64_t> major = parse_integer(text.substr(0, text.find('.')));
-    if (!major || *major < 0) throw SceneError(file.place(root), "version = " + in_quotes(text) + ", expected three numbers as in 3.0.0");
+    if (!major || *major < 0)
+      throw SceneError(file.place(root), "version = " + in_quotes(text) + ", expected three numbers as in 3.0.0");
     return *major < 2;
   }
 
@@ -150,9 +152,11 @@ class XmlSceneReader {
       attributes.fail("filename = " + in_quotes(filename) + " includes itself, directly or through other files");
     }
     if (open_files_.size() > kMaxIncludeDepth) {
-      attributes.fail("filename = " + in_quotes(filename) + " is included through more than " + std::to_string(kMaxIncludeDepth) + " files");
+      attributes.fail("filename = " + in_quotes(filename) + " is included through more than " +
+                      std::to_string(kMaxIncludeDepth) + " files");
     }
-    if (++includes_ > kMaxIncludes) attributes.fail("is one of more than " + std::to_string(kMaxIncludes) + " includes of this scene");
+    if (++includes_ > kMaxIncludes)
+      attributes.fail("is one of more than " + std::to_string(kMaxIncludes) + " includes of this scene");
     read_file_into(path, parent, source.legacy, &place);
   }
 
@@ -162,6 +166,8 @@ class XmlSceneReader {
 
   // The text with every $name replaced. A $ that no name follows stays.
   std::string substituted(const std::string& text, const std::string& place) {
+    if (text.size() > kMaxAttributeLength)
+      throw SceneError(place, "an attribute is longer than " + std::to_string(kMaxAttributeLength) + " bytes");
     std::string result;
     for (std::size_t i = 0; i < text.size();) {
       if (text[i] != '$' || i + 1 == text.size() || !is_name_character(text[i + 1])) {

@@ -27,8 +27,8 @@ const PluginNode& referenced_bsdf(const PluginNode& reference, const PluginsById
   const auto found = plugins.find(reference.id);
   if (found == plugins.end()) throw SceneError(reference.place, "nothing in the scene has the id " + in_quotes(reference.id));
   if (found->second->kind != PluginKind::kBsdf) {
-    throw SceneError(reference.place, "the id " + in_quotes(reference.id) + " belongs to a " + title(*found->second) +
-                                          " at " + found->second->place + ", expected a bsdf");
+    throw SceneError(reference.place, "the id " + in_quotes(reference.id) + " belongs to a " + title(*found->second) + " at " +
+                                          found->second->place + ", expected a bsdf");
   }
   return *found->second;
 }

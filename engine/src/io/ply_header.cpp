@@ -55,7 +55,9 @@ class HeaderParser {
   }
 
  private:
-  [[noreturn]] void fail(const std::string& what) const { throw SceneError(name_ + ":" + std::to_string(line_), "bad PLY header: " + what); }
+  [[noreturn]] void fail(const std::string& what) const {
+    throw SceneError(name_ + ":" + std::to_string(line_), "bad PLY header: " + what);
+  }
 
   std::vector<std::string> next_line() {
     ++line_;
@@ -92,7 +94,8 @@ class HeaderParser {
     const std::optional<PlyType> type = type_of(words[words.size() - 2]);
     const std::optional<PlyType> count_type = list ? type_of(words[2]) : PlyType::kUint8;
     if (!type || !count_type) fail("unknown type in " + in_quotes(joined(words)));
-    if (list && (*count_type == PlyType::kFloat32 || *count_type == PlyType::kFloat64)) fail("the length of a list must have an integer type");
+    if (list && (*count_type == PlyType::kFloat32 || *count_type == PlyType::kFloat64))
+      fail("the length of a list must have an integer type");
     PlyElement& element = header_.elements.back();
     if (element.find(words.back()) >= 0) fail("property " + in_quotes(words.back()) + " occurs twice");
     element.properties.push_back({words.back(), *type, list, *count_type});

@@ -18,7 +18,9 @@ struct DescribeValue {
   std::string operator()(const std::string& value) const { return in_quotes(value); }
   std::string operator()(Rgb v) const { return number_text(v.r) + ", " + number_text(v.g) + ", " + number_text(v.b); }
   std::string operator()(UniformSpectrum value) const { return number_text(value.value); }
-  std::string operator()(const Triple& v) const { return number_text(v[0]) + ", " + number_text(v[1]) + ", " + number_text(v[2]); }
+  std::string operator()(const Triple& v) const {
+    return number_text(v[0]) + ", " + number_text(v[1]) + ", " + number_text(v[2]);
+  }
   std::string operator()(const Transform&) const { return "a transform"; }
 };
 
@@ -128,7 +130,8 @@ Rgb Properties::rgb(const std::string& name, Rgb otherwise, NumberRange range) {
     value = expect<Rgb>(*property, "a colour (rgb) or a number");
   }
   for (const float channel : {value.r, value.g, value.b}) {
-    if (!std::isfinite(channel) || !contains(range, static_cast<double>(channel))) fail(name, "expected " + described(range, "numbers"));
+    if (!std::isfinite(channel) || !contains(range, static_cast<double>(channel)))
+      fail(name, "expected " + described(range, "numbers"));
   }
   return value;
 }

@@ -1,4 +1,5 @@
-// The parameters of one plugin, read by name. Remembers which names were asked for, so that every unknown parameter is an error.
+// The parameters of one plugin, read by name. Remembers which names were asked for, so that every unknown parameter is an
+// error.
 #pragma once
 
 #include <limits>

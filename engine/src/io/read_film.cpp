@@ -31,8 +31,9 @@ std::pair<int, int> read_crop(Properties& properties, const std::string& offset_
   const int offset = static_cast<int>(properties.integer(offset_name, 0, {0, static_cast<double>(side - 1)}));
   const int size = static_cast<int>(properties.integer(size_name, side, {1, static_cast<double>(side)}));
   if (offset + size > side) {
-    properties.fail(properties.has(size_name) ? size_name : offset_name,
-                    "the crop window ends at pixel " + std::to_string(offset + size) + ", expected at most " + std::to_string(side));
+    properties.fail(
+        properties.has(size_name) ? size_name : offset_name,
+        "the crop window ends at pixel " + std::to_string(offset + size) + ", expected at most " + std::to_string(side));
   }
   return {offset, size};
 }
@@ -51,8 +52,9 @@ FilmDescription read_film(const PluginNode& node) {
   film.width = static_cast<int>(properties.integer("width", film.width, kSide));
   film.height = static_cast<int>(properties.integer("height", film.height, kSide));
   if (std::int64_t{film.width} * film.height > kMaxImagePixels) {
-    properties.fail("width", "height = " + std::to_string(film.height) + ": " + std::to_string(std::int64_t{film.width} * film.height) +
-                                 " pixels, expected at most " + std::to_string(kMaxImagePixels));
+    properties.fail("width", "height = " + std::to_string(film.height) + ": " +
+                                 std::to_string(std::int64_t{film.width} * film.height) + " pixels, expected at most " +
+                                 std::to_string(kMaxImagePixels));
   }
   const auto [x, width] = read_crop(properties, "crop_offset_x", "crop_width", film.width);
   const auto [y, height] = read_crop(properties, "crop_offset_y", "crop_height", film.height);
@@ -62,7 +64,8 @@ FilmDescription read_film(const PluginNode& node) {
     film.crop_width = width;
     film.crop_height = height;
   }
-  properties.ignore({"file_format", "pixel_format", "component_format", "banner", "sample_border", "high_quality_edges", "compensate"});
+  properties.ignore(
+      {"file_format", "pixel_format", "component_format", "banner", "sample_border", "high_quality_edges", "compensate"});
   properties.finish();
 
   bool has_filter = false;

@@ -78,8 +78,10 @@ Roughness read_roughness(Properties& properties, bool anisotropic) {
   const float alpha = properties.number("alpha", 0.1f, kUnitInterval);
   result.alpha_u = result.alpha_v = alpha;
   if (anisotropic) {
-    if (properties.has("alpha_u") != properties.has("alpha_v")) properties.fail("alpha", "alpha_u and alpha_v must be given together");
-    if (properties.has("alpha") && properties.has("alpha_u")) properties.fail("alpha", "but alpha_u and alpha_v are given, too");
+    if (properties.has("alpha_u") != properties.has("alpha_v"))
+      properties.fail("alpha", "alpha_u and alpha_v must be given together");
+    if (properties.has("alpha") && properties.has("alpha_u"))
+      properties.fail("alpha", "but alpha_u and alpha_v are given, too");
     result.alpha_u = properties.number("alpha_u", alpha, kUnitInterval);
     result.alpha_v = properties.number("alpha_v", alpha, kUnitInterval);
   }
@@ -98,7 +100,8 @@ MaterialDescription read_simple(const PluginNode& node) {
     result = read_dielectric(properties);
   } else if (node.type == "roughdielectric") {
     const DielectricDescription dielectric = read_dielectric(properties);
-    if (dielectric.eta == 1) throw SceneError(node.place, title(node) + ": int_ior and ext_ior are equal, expected two different ones");
+    if (dielectric.eta == 1)
+      throw SceneError(node.place, title(node) + ": int_ior and ext_ior are equal, expected two different ones");
     result = RoughDielectricDescription{dielectric, read_roughness(properties, true)};
   } else if (node.type == "conductor") {
     result = read_conductor(properties);
@@ -114,14 +117,15 @@ MaterialDescription read_simple(const PluginNode& node) {
 }
 
 bool transmits(const MaterialDescription& material) {
-  return std::holds_alternative<DielectricDescription>(material) || std::holds_alternative<RoughDielectricDescription>(material);
+  return std::holds_alternative<DielectricDescription>(material) ||
+         std::holds_alternative<RoughDielectricDescription>(material);
 }
 
 }  // namespace
 
 int MaterialReader::read(const PluginNode& bsdf_or_reference) {
-  const PluginNode& node = bsdf_or_reference.kind == PluginKind::kReference ? referenced_bsdf(bsdf_or_reference, plugins_)
-                                                                           : bsdf_or_reference;
+  const PluginNode& node =
+      bsdf_or_reference.kind == PluginKind::kReference ? referenced_bsdf(bsdf_or_reference, plugins_) : bsdf_or_reference;
   if (const auto known = indices_.find(&node); known != indices_.end()) return known->second;
   if (!being_read_.insert(&node).second) throw SceneError(bsdf_or_reference.place, title(node) + " contains itself");
   MaterialDescription material = node.type == "twosided" ? read_twosided(node) : read_simple(node);
@@ -143,7 +147,8 @@ MaterialDescription MaterialReader::read_twosided(const PluginNode& node) {
     if (child.kind != PluginKind::kBsdf && child.kind != PluginKind::kReference) fail_nested(node, child, "one or two bsdfs");
     int side = read(child);
     const MaterialDescription& material = materials_[static_cast<std::size_t>(side)];
-    if (transmits(material)) throw SceneError(child.place, title(node) + " holds a material that transmits light, expected an opaque one");
+    if (transmits(material))
+      throw SceneError(child.place, title(node) + " holds a material that transmits light, expected an opaque one");
     // A twosided within a twosided is only ever seen from its front.
     if (const auto* inner = std::get_if<TwosidedDescription>(&material)) side = inner->front;
     sides.push_back(side);

@@ -63,7 +63,8 @@ CameraDescription read_camera(Properties& properties) {
   }
   camera.near_clip = properties.number("near_clip", 1e-2f, kPositive);
   camera.far_clip = properties.number("far_clip", 1e4f, kPositive);
-  if (camera.far_clip <= camera.near_clip) properties.fail("far_clip", "expected more than near_clip = " + number_text(camera.near_clip));
+  if (camera.far_clip <= camera.near_clip)
+    properties.fail("far_clip", "expected more than near_clip = " + number_text(camera.near_clip));
   for (const char* name : {"principal_point_offset_x", "principal_point_offset_y"}) {
     if (properties.number(name, 0) != 0) properties.fail(name, "is not supported yet, expected 0");
   }

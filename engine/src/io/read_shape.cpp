@@ -65,7 +65,8 @@ RawMesh read_mesh_file(const PluginNode& node, Properties& properties, const Bun
   return node.type == "obj" ? parse_obj(bytes, name) : parse_ply(bytes, name);
 }
 
-MeshDescription read_mesh(const PluginNode& node, Properties& properties, const Bundle& bundle, std::vector<std::string>& warnings) {
+MeshDescription read_mesh(const PluginNode& node, Properties& properties, const Bundle& bundle,
+                          std::vector<std::string>& warnings) {
   MeshOptions options;
   options.to_world = properties.transform("to_world");
   options.face_normals = properties.boolean("face_normals", false);
@@ -78,7 +79,8 @@ MeshDescription read_mesh(const PluginNode& node, Properties& properties, const 
 
 SphereDescription read_sphere(Properties& properties, bool& flip_normals) {
   const Transform to_world = properties.transform("to_world");
-  if (!keeps_shape(to_world, 3)) properties.fail("to_world", "stretches or shears the sphere, expected the same scale, not 0, on all axes");
+  if (!keeps_shape(to_world, 3))
+    properties.fail("to_world", "stretches or shears the sphere, expected the same scale, not 0, on all axes");
   // Mitsuba turns a mirrored sphere inside out; so do we.
   if (to_world.determinant() < 0) flip_normals = !flip_normals;
   const Triple c = properties.triple("center", {0, 0, 0});
@@ -87,20 +89,23 @@ SphereDescription read_sphere(Properties& properties, bool& flip_normals) {
   const Column x = column(to_world, 0);
   sphere.radius = properties.number("radius", 1, kPositive) * static_cast<float>(std::sqrt(dot_product(x, x)));
   if (!is_finite(sphere.center)) properties.fail("center", "expected finite numbers");
-  if (!(sphere.radius > 0) || !std::isfinite(sphere.radius)) properties.fail("radius", "with to_world the radius becomes 0 or infinite");
+  if (!(sphere.radius > 0) || !std::isfinite(sphere.radius))
+    properties.fail("radius", "with to_world the radius becomes 0 or infinite");
   return sphere;
 }
 
 DiskDescription read_disk(Properties& properties) {
   const Transform to_world = properties.transform("to_world");
-  if (!keeps_shape(to_world, 2)) properties.fail("to_world", "makes the disk an ellipse or a point, expected the same scale, not 0, on x and y");
+  if (!keeps_shape(to_world, 2))
+    properties.fail("to_world", "makes the disk an ellipse or a point, expected the same scale, not 0, on x and y");
   return {to_world};
 }
 
 RectangleDescription read_rectangle(Properties& properties) {
   const Transform to_world = properties.transform("to_world");
   const Vec3f normal = to_world.normal({0, 0, 1});
-  if (!is_finite(normal) || normal == Vec3f{}) properties.fail("to_world", "gives the rectangle no area, expected x and y axes that differ and are not 0");
+  if (!is_finite(normal) || normal == Vec3f{})
+    properties.fail("to_world", "gives the rectangle no area, expected x and y axes that differ and are not 0");
   return {to_world};
 }
 
@@ -125,7 +130,8 @@ void read_nested(const PluginNode& node, MaterialReader& materials, ShapeDescrip
 
 }  // namespace
 
-ShapeDescription read_shape(const PluginNode& node, const Bundle& bundle, MaterialReader& materials, std::vector<std::string>& warnings) {
+ShapeDescription read_shape(const PluginNode& node, const Bundle& bundle, MaterialReader& materials,
+                            std::vector<std::string>& warnings) {
   Properties properties(node);
   ShapeDescription shape;
   shape.name = node.id.empty() ? node.place : node.id;

@@ -18,7 +18,8 @@ PluginNode read_tree(const Bundle& bundle, const SceneOverrides& overrides) {
   if (extension == ".xml") return read_mitsuba_xml(bundle, overrides);
   const std::string name = bundle.name(bundle.entry());
   if (extension != ".json") throw SceneError(name, "has the extension " + in_quotes(extension) + ", expected .xml or .json");
-  if (!overrides.empty()) throw SceneError(name, "takes no value for $" + overrides.begin()->first + ": only XML scenes have such names");
+  if (!overrides.empty())
+    throw SceneError(name, "takes no value for $" + overrides.begin()->first + ": only XML scenes have such names");
   return read_mitsuba_json(bundle);
 }
 
@@ -54,11 +55,14 @@ SceneDescription build(const PluginNode& root, const Bundle& bundle) {
       case PluginKind::kEmitter: scene.emitters.push_back(read_scene_emitter(child)); break;
       case PluginKind::kBsdf: break;  // read when a shape refers to it
       case PluginKind::kSensor:
-        if (sensor) scene.warnings.push_back(child.place + ": the scene has more than one sensor; the one at " + sensor->place + " is used");
+        if (sensor)
+          scene.warnings.push_back(child.place + ": the scene has more than one sensor; the one at " + sensor->place +
+                                   " is used");
         if (!sensor) sensor = &child;
         break;
       case PluginKind::kIntegrator:
-        if (integrator) throw SceneError(child.place, "the scene has a second integrator; the first is at " + integrator->place);
+        if (integrator)
+          throw SceneError(child.place, "the scene has a second integrator; the first is at " + integrator->place);
         integrator = &child;
         break;
       default: fail_nested(root, child, "integrator, sensor, bsdf, shape and emitter");
@@ -74,7 +78,8 @@ SceneDescription build(const PluginNode& root, const Bundle& bundle) {
 
 }  // namespace
 
-SceneDescription read_scene(const std::filesystem::path& folder, const std::filesystem::path& entry, const SceneOverrides& overrides) {
+SceneDescription read_scene(const std::filesystem::path& folder, const std::filesystem::path& entry,
+                            const SceneOverrides& overrides) {
   const Bundle bundle(folder, entry);
   return build(read_tree(bundle, overrides), bundle);
 }

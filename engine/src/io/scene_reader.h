@@ -8,8 +8,8 @@
 
 namespace fluxfarm {
 
-// Reads `entry`, a path relative to `folder`: Mitsuba XML (.xml) or the same plugin tree as JSON (.json). `overrides` gives values
-// for $name that win over <default>; only XML has them. Nothing outside `folder` is opened.
+// Reads `entry`, a path relative to `folder`: Mitsuba XML (.xml) or the same plugin tree as JSON (.json). `overrides` gives
+// values for $name that win over <default>; only XML has them. Nothing outside `folder` is opened.
 //
 // The result is complete and checked; what deserves a word but is no error (no light, triangles without area, a second sensor)
 // is in its `warnings`. Throws SceneError whose text names file and place, the value, and what would be right; ResourceError if

@@ -9,7 +9,13 @@
 
 namespace fluxfarm {
 
-// The text in double quotes, control characters replaced and long texts cut, fit for one line of a message.
+// Whether the bytes are well-formed UTF-8, without overlong forms and surrogates.
+bool is_utf8(std::string_view bytes);
+
+// The text with control characters and bytes that are no UTF-8 as question marks: messages travel as UTF-8.
+std::string printable(std::string_view bytes);
+
+// The printable text in double quotes, cut if long, fit for one line of a message.
 std::string in_quotes(std::string_view text);
 
 // "a, b, c"

@@ -1,6 +1,7 @@
 #include "io/xml_file.h"
 
 #include <algorithm>
+#include <cstring>
 
 #include "io/bundle.h"
 #include "io/limits.h"
@@ -11,12 +12,13 @@ namespace fluxfarm {
 
 XmlFile::XmlFile(const std::filesystem::path& file, const std::string& name) : name_(name) {
   const std::string text = read_file(file, name, kMaxSceneTextBytes);
+  if (!is_utf8(text)) throw SceneError(name, "is not UTF-8 text");
   line_starts_.push_back(0);
   for (std::size_t i = 0; i < text.size(); ++i) {
     if (text[i] == '\n') line_starts_.push_back(static_cast<std::ptrdiff_t>(i + 1));
   }
   constexpr unsigned kFlags = pugi::parse_default | pugi::parse_doctype | pugi::parse_trim_pcdata;
-  const pugi::xml_parse_result result = document_.load_buffer(text.data(), text.size(), kFlags);
+  const pugi::xml_parse_result result = document_.load_buffer(text.data(), text.size(), kFlags, pugi::encoding_utf8);
   if (!result) {
     throw SceneError(place_of_offset(result.offset), std::string("is not well-formed XML: ") + result.description());
   }
@@ -34,6 +36,7 @@ void XmlFile::check_nodes() const {
       if (depth() >= kMaxNesting) {
         throw SceneError(file.place(node), "elements are nested deeper than " + std::to_string(kMaxNesting) + " levels");
       }
+      if (std::strlen(node.name()) > kMaxNameLength) throw SceneError(file.place(node), "the name of an element is too long");
       if (node.type() == pugi::node_pcdata || node.type() == pugi::node_cdata) {
         throw SceneError(file.place(node), "text " + in_quotes(node.value()) + " between the elements, expected only elements");
       }

@@ -10,8 +10,8 @@ namespace fluxfarm {
 
 class XmlFile {
  public:
-  // Throws SceneError for text that is not well-formed, for any DOCTYPE (so no entity can be defined), for nesting deeper than
-  // kMaxNesting and for text between elements. `name` is the file as messages show it.
+  // Throws SceneError for text that is not UTF-8 or not well-formed, for any DOCTYPE (so no entity can be defined), for nesting
+  // deeper than kMaxNesting and for text between elements. `name` is the file as messages show it.
   XmlFile(const std::filesystem::path& file, const std::string& name);
 
   pugi::xml_node root() const { return document_.document_element(); }

@@ -37,7 +37,8 @@ double XmlAttributes::number(const std::string& name) const {
 
 Triple XmlAttributes::triple(const std::string& name) const {
   const auto values = parse_numbers(text(name));
-  if (!values || values->size() != 3 || !std::all_of(values->begin(), values->end(), [](double v) { return std::isfinite(v); })) {
+  if (!values || values->size() != 3 ||
+      !std::all_of(values->begin(), values->end(), [](double v) { return std::isfinite(v); })) {
     fail(name + " = " + in_quotes(text(name)) + ", expected three finite numbers");
   }
   return {(*values)[0], (*values)[1], (*values)[2]};
@@ -60,8 +61,10 @@ Triple one_or_three(const XmlAttributes& attributes, const char* expected) {
   const std::string& text = attributes.text("value");
   const auto values = parse_numbers(text);
   const bool finite = values && std::all_of(values->begin(), values->end(), [](double v) { return std::isfinite(v); });
-  if (!finite || (values->size() != 1 && values->size() != 3)) attributes.fail("value = " + in_quotes(text) + ", expected " + expected);
-  return values->size() == 1 ? Triple{(*values)[0], (*values)[0], (*values)[0]} : Triple{(*values)[0], (*values)[1], (*values)[2]};
+  if (!finite || (values->size() != 1 && values->size() != 3))
+    attributes.fail("value = " + in_quotes(text) + ", expected " + expected);
+  return values->size() == 1 ? Triple{(*values)[0], (*values)[0], (*values)[0]}
+                             : Triple{(*values)[0], (*values)[1], (*values)[2]};
 }
 
 // Either `value` or the attributes x, y and z; a missing one of these is `otherwise`, or an error if that is absent.
@@ -70,9 +73,7 @@ Triple read_xyz(const XmlAttributes& attributes, std::optional<double> otherwise
     if (attributes.has("x") || attributes.has("y") || attributes.has("z")) attributes.fail("has both value and x, y, z");
     return otherwise == 1.0 ? one_or_three(attributes, "one or three numbers") : attributes.triple("value");
   }
-  const auto axis = [&](const char* name) {
-    return !attributes.has(name) && otherwise ? *otherwise : attributes.number(name);
-  };
+  const auto axis = [&](const char* name) { return !attributes.has(name) && otherwise ? *otherwise : attributes.number(name); };
   return {axis("x"), axis("y"), axis("z")};
 }
 
@@ -107,7 +108,8 @@ Transform read_transform(const XmlFile& file, const pugi::xml_node& element, con
   Transform result;
   for (const pugi::xml_node& step : element.children()) {
     if (step.type() != pugi::node_element) continue;
-    if (step.first_child()) throw SceneError(file.place(step), std::string("<") + step.name() + "> has elements inside, expected none");
+    if (step.first_child())
+      throw SceneError(file.place(step), std::string("<") + step.name() + "> has elements inside, expected none");
     result = read_step(step.name(), XmlAttributes(step, file.place(step), substitute)) * result;
   }
   if (!result.is_finite()) attributes.fail("gives a matrix with infinite or NaN numbers");

@@ -15,7 +15,9 @@
 namespace fluxfarm {
 namespace {
 
-std::filesystem::path temporary(const std::string& name) { return std::filesystem::path(testing::TempDir()) / ("fluxfarm-io-" + name); }
+std::filesystem::path temporary(const std::string& name) {
+  return std::filesystem::path(testing::TempDir()) / ("fluxfarm-io-" + name);
+}
 
 std::string bytes_of(const std::filesystem::path& path) {
   std::ifstream stream(path, std::ios::binary);

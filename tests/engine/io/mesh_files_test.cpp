@@ -8,7 +8,8 @@
 namespace fluxfarm {
 namespace {
 
-SceneDescription read_mesh(const SceneFolder& folder, const std::string& file, const std::string& bytes, const std::string& more = "") {
+SceneDescription read_mesh(const SceneFolder& folder, const std::string& file, const std::string& bytes,
+                           const std::string& more = "") {
   folder.write(file, bytes);
   const std::string type = file.substr(file.size() - 3);
   return folder.read_xml("<shape type=\"" + type + "\"><string name=\"filename\" value=\"" + file + "\"/>" + more + "</shape>");
@@ -115,7 +116,8 @@ TEST(Mesh, CubeHasOutwardSides) {
   EXPECT_EQ(mesh.positions.size(), 24u);
   ASSERT_EQ(mesh.indices.size(), 36u);
   for (std::size_t t = 0; t < 36; t += 3) {
-    const Vec3f a = mesh.positions[mesh.indices[t]], b = mesh.positions[mesh.indices[t + 1]], c = mesh.positions[mesh.indices[t + 2]];
+    const Vec3f a = mesh.positions[mesh.indices[t]], b = mesh.positions[mesh.indices[t + 1]],
+                c = mesh.positions[mesh.indices[t + 2]];
     const Vec3f n = cross(b - a, c - a);
     EXPECT_NEAR(length(n), 4, 1e-6f);
     EXPECT_GT(dot(n, a), 0);
@@ -127,7 +129,8 @@ TEST(Mesh, CubeHasOutwardSides) {
 
 // Two triangles as a square with normals, texture coordinates, a property and an element that nobody knows.
 std::string ply_header(const std::string& format, int vertices = 4, int faces = 1) {
-  return "ply\nformat " + format + " 1.0\ncomment made by hand\nelement unknown 2\nproperty list uchar short what\nelement vertex " +
+  return "ply\nformat " + format +
+         " 1.0\ncomment made by hand\nelement unknown 2\nproperty list uchar short what\nelement vertex " +
          std::to_string(vertices) +
          "\nproperty float x\nproperty float y\nproperty double z\nproperty uchar red\nproperty float nx\nproperty float ny\n"
          "property float nz\nproperty float s\nproperty float t\nelement face " +
@@ -212,10 +215,12 @@ TEST(Ply, TruncatedDataIsAnErrorAtEveryLength) {
 TEST(Ply, CountsThatTheFileCannotHoldAreErrorsBeforeMemoryIsTaken) {
   const SceneFolder folder;
   EXPECT_EQ(error_of([&] { read_mesh(folder, "a.ply", ply_header("binary_little_endian", 2000000000) + binary_rows(false)); }),
-            "a.ply: unknown 1: the header promises 2000000000 rows of \"vertex\", but 161 bytes are left in the file; it is cut off or "
+            "a.ply: unknown 1: the header promises 2000000000 rows of \"vertex\", but 161 bytes are left in the file; it is "
+            "cut off or "
             "its header is wrong");
-  const std::string list = "ply\nformat binary_little_endian 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\n"
-                           "element face 1\nproperty list uint int vertex_indices\nend_header\n";
+  const std::string list =
+      "ply\nformat binary_little_endian 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\n"
+      "element face 1\nproperty list uint int vertex_indices\nend_header\n";
   Bytes bytes(false);
   bytes.add(0.0f).add(0.0f).add(0.0f).add(std::uint32_t{4000000000u}).add(std::int32_t{0});
   EXPECT_EQ(error_of([&] { read_mesh(folder, "a.ply", list + bytes.text()); }),
@@ -224,8 +229,9 @@ TEST(Ply, CountsThatTheFileCannotHoldAreErrorsBeforeMemoryIsTaken) {
 
 TEST(Ply, WrongIndicesAndNumbersAreErrors) {
   const SceneFolder folder;
-  const std::string header = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
-                             "element face 1\nproperty list uchar int vertex_indices\nend_header\n";
+  const std::string header =
+      "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+      "element face 1\nproperty list uchar int vertex_indices\nend_header\n";
   const auto error = [&](const std::string& rows) { return error_of([&] { read_mesh(folder, "a.ply", header + rows); }); };
   EXPECT_EQ(error("0 0 0 1 0 0 0 1 0 3 0 1 3"), "a.ply: face 0: refers to vertex 3, expected an index from 0 to 2");
   EXPECT_EQ(error("0 0 0 1 0 0 0 1 0 3 0 1 -1"), "a.ply: face 0: refers to vertex -1, expected an index from 0 to 2");
@@ -245,14 +251,16 @@ TEST(Ply, BadHeadersAreErrors) {
             "a.ply:3: bad PLY header: expected \"element NAME COUNT\" with a count of at least 0");
   EXPECT_EQ(error("ply\nend_header\n"), "a.ply:2: bad PLY header: the header has no format");
   EXPECT_EQ(error("ply\nformat ascii 1.0\nelement face 0\nend_header\n"), "a.ply: has no vertices");
-  EXPECT_EQ(error("ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nend_header\n1\n"), "a.ply: the vertices lack x, y or z");
+  EXPECT_EQ(error("ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nend_header\n1\n"),
+            "a.ply: the vertices lack x, y or z");
 }
 
 TEST(Ply, ElementsWithoutPropertiesTakeNoTime) {
   const SceneFolder folder;
-  const std::string bytes = "ply\nformat ascii 1.0\nelement nothing 4000000000\nelement vertex 3\nproperty float x\nproperty float y\n"
-                            "property float z\nelement face 1\nproperty list uchar int vertex_index\nend_header\n"
-                            "0 0 0 1 0 0 0 1 0 3 0 1 2\n";
+  const std::string bytes =
+      "ply\nformat ascii 1.0\nelement nothing 4000000000\nelement vertex 3\nproperty float x\nproperty float y\n"
+      "property float z\nelement face 1\nproperty list uchar int vertex_index\nend_header\n"
+      "0 0 0 1 0 0 0 1 0 3 0 1 2\n";
   EXPECT_EQ(only_mesh(read_mesh(folder, "a.ply", bytes)).indices.size(), 3u);
 }
 

@@ -14,7 +14,8 @@ std::filesystem::path scenes_data() {
 class OutsideScenes : public testing::Test {
  protected:
   void SetUp() override {
-    if (!std::filesystem::is_directory(scenes_data())) GTEST_SKIP() << "no outside scenes: set FLUXFARM_SCENES_DATA to their folder";
+    if (!std::filesystem::is_directory(scenes_data()))
+      GTEST_SKIP() << "no outside scenes: set FLUXFARM_SCENES_DATA to their folder";
   }
   static SceneDescription read(const std::string& name) { return read_scene(scenes_data() / name, "scene.xml"); }
   static std::size_t triangles(const SceneDescription& scene) {
@@ -54,8 +55,10 @@ TEST_F(OutsideScenes, WaterCausticWithOldSpellingsLoads) {
 }
 
 TEST_F(OutsideScenes, PluginsOfLaterAreNamed) {
-  EXPECT_EQ(error_of([] { read("glass-of-milk"); }), "scene.xml:27: unknown plugin: medium \"homogeneous\"; no medium is supported yet");
-  EXPECT_EQ(error_of([] { read("veach-ajar"); }), "scene.xml:29: unknown plugin: texture \"bitmap\"; no texture is supported yet");
+  EXPECT_EQ(error_of([] { read("glass-of-milk"); }),
+            "scene.xml:27: unknown plugin: medium \"homogeneous\"; no medium is supported yet");
+  EXPECT_EQ(error_of([] { read("veach-ajar"); }),
+            "scene.xml:29: unknown plugin: texture \"bitmap\"; no texture is supported yet");
 }
 
 }  // namespace

@@ -28,25 +28,31 @@ TEST(Materials, DefaultsAreMitsubas) {
 
 TEST(Materials, IndicesMayBeNumbersOrNames) {
   const SceneFolder folder;
-  const std::string bsdf = "<bsdf type=\"dielectric\"><string name=\"int_ior\" value=\"Diamond\"/><float name=\"ext_ior\" value=\"2\"/></bsdf>";
+  const std::string bsdf =
+      "<bsdf type=\"dielectric\"><string name=\"int_ior\" value=\"Diamond\"/><float name=\"ext_ior\" value=\"2\"/></bsdf>";
   EXPECT_FLOAT_EQ(std::get<DielectricDescription>(material(folder, bsdf)).eta, 2.419f / 2);
-  EXPECT_EQ(material_error(folder, "<bsdf type=\"dielectric\"><string name=\"int_ior\" value=\"jelly\"/></bsdf>")
-                .find("scene.xml:2: bsdf \"dielectric\": int_ior = \"jelly\", expected a number greater than 0 or one of: vacuum, "),
-            0u);
+  EXPECT_EQ(
+      material_error(folder, "<bsdf type=\"dielectric\"><string name=\"int_ior\" value=\"jelly\"/></bsdf>")
+          .find("scene.xml:2: bsdf \"dielectric\": int_ior = \"jelly\", expected a number greater than 0 or one of: vacuum, "),
+      0u);
 }
 
 TEST(Materials, ConductorsTakeAMaterialOrAnIndex) {
   const SceneFolder folder;
-  const auto gold = std::get<ConductorDescription>(material(folder, "<bsdf type=\"conductor\"><string name=\"material\" value=\"Au\"/></bsdf>"));
+  const auto gold = std::get<ConductorDescription>(
+      material(folder, "<bsdf type=\"conductor\"><string name=\"material\" value=\"Au\"/></bsdf>"));
   EXPECT_FALSE(gold.perfect);
   EXPECT_NEAR(gold.eta.r, 0.143036f, 1e-6f);
   EXPECT_NEAR(gold.k.b, 1.60336f, 1e-5f);
   const auto copper = std::get<ConductorDescription>(material(
-      folder, "<bsdf type=\"conductor\"><rgb name=\"eta\" value=\"0.2 0.9 1.1\"/><rgb name=\"k\" value=\"3.9, 2.4, 2.1\"/></bsdf>"));
+      folder,
+      "<bsdf type=\"conductor\"><rgb name=\"eta\" value=\"0.2 0.9 1.1\"/><rgb name=\"k\" value=\"3.9, 2.4, 2.1\"/></bsdf>"));
   EXPECT_EQ(copper.eta, Rgb(0.2f, 0.9f, 1.1f));
   EXPECT_EQ(copper.k, Rgb(3.9f, 2.4f, 2.1f));
-  EXPECT_EQ(material_error(folder, "<bsdf type=\"conductor\"><string name=\"material\" value=\"Au\"/><float name=\"k\" value=\"1\"/></bsdf>"),
-            "scene.xml:2: bsdf \"conductor\": material = \"Au\", but eta or k are given, too; expected one or the other");
+  EXPECT_EQ(
+      material_error(folder,
+                     "<bsdf type=\"conductor\"><string name=\"material\" value=\"Au\"/><float name=\"k\" value=\"1\"/></bsdf>"),
+      "scene.xml:2: bsdf \"conductor\": material = \"Au\", but eta or k are given, too; expected one or the other");
 }
 
 TEST(Materials, RoughnessIsCheckedAndKeptAboveZero) {
@@ -54,7 +60,8 @@ TEST(Materials, RoughnessIsCheckedAndKeptAboveZero) {
   const auto alpha = [](const std::string& value) {
     return "<bsdf type=\"roughconductor\"><float name=\"alpha\" value=\"" + value + "\"/></bsdf>";
   };
-  EXPECT_EQ(material_error(folder, alpha("1.7")), "scene.xml:2: bsdf \"roughconductor\": alpha = 1.7, expected a number in [0, 1]");
+  EXPECT_EQ(material_error(folder, alpha("1.7")),
+            "scene.xml:2: bsdf \"roughconductor\": alpha = 1.7, expected a number in [0, 1]");
   EXPECT_FLOAT_EQ(std::get<RoughConductorDescription>(material(folder, alpha("0"))).roughness.alpha_u, 1e-4f);
   EXPECT_EQ(material_error(folder, "<bsdf type=\"roughplastic\"><string name=\"distribution\" value=\"phong\"/></bsdf>"),
             "scene.xml:2: bsdf \"roughplastic\": distribution = \"phong\", expected beckmann or ggx");
@@ -65,7 +72,8 @@ TEST(Materials, ReflectancesLieBetweenZeroAndOne) {
   EXPECT_EQ(material_error(folder, "<bsdf type=\"diffuse\"><rgb name=\"reflectance\" value=\"0.5, 1.2, 0\"/></bsdf>"),
             "scene.xml:2: bsdf \"diffuse\": reflectance = 0.5, 1.2, 0, expected numbers in [0, 1]");
   EXPECT_EQ(material_error(folder, "<bsdf type=\"diffuse\"><spectrum name=\"reflectance\" value=\"400:0.5, 700:0.7\"/></bsdf>"),
-            "scene.xml:2: <spectrum> value = \"400:0.5, 700:0.7\": spectra by wavelength are not supported, expected one number, or use <rgb>");
+            "scene.xml:2: <spectrum> value = \"400:0.5, 700:0.7\": spectra by wavelength are not supported, expected one "
+            "number, or use <rgb>");
   EXPECT_EQ(material_error(folder, "<bsdf type=\"diffuse\">\n<texture type=\"bitmap\" name=\"reflectance\"/></bsdf>"),
             "scene.xml:3: unknown plugin: texture \"bitmap\"; no texture is supported yet");
 }
@@ -89,8 +97,9 @@ TEST(Materials, TwosidedTakesOneOrTwoOpaqueMaterials) {
 TEST(Materials, ThatNoShapeUsesAreCheckedButLeftOut) {
   const SceneFolder folder;
   EXPECT_TRUE(folder.read_xml("<bsdf type=\"dielectric\" id=\"unused\"/>").materials.empty());
-  EXPECT_NE(error_of([&] { folder.read_xml("<bsdf type=\"dielectric\" id=\"unused\"><float name=\"int_ior\" value=\"-1\"/></bsdf>"); })
-                .find("int_ior = -1, expected a number greater than 0"),
+  EXPECT_NE(error_of([&] {
+              folder.read_xml("<bsdf type=\"dielectric\" id=\"unused\"><float name=\"int_ior\" value=\"-1\"/></bsdf>");
+            }).find("int_ior = -1, expected a number greater than 0"),
             std::string::npos);
 }
 
@@ -115,11 +124,14 @@ TEST(Shapes, SpheresTakeUniformScaleAndTurnInsideOutWhenMirrored) {
 TEST(Shapes, DisksStayRoundAndRectanglesKeepAnArea) {
   const SceneFolder folder;
   const auto error = [&](const std::string& type, const std::string& step) {
-    return error_of([&] { folder.read_xml("<shape type=\"" + type + "\"><transform name=\"to_world\">" + step + "</transform></shape>"); });
+    return error_of(
+        [&] { folder.read_xml("<shape type=\"" + type + "\"><transform name=\"to_world\">" + step + "</transform></shape>"); });
   };
   EXPECT_NE(error("disk", "<scale x=\"2\"/>").find("makes the disk an ellipse or a point"), std::string::npos);
   EXPECT_NE(error("rectangle", "<scale x=\"0\"/>").find("gives the rectangle no area"), std::string::npos);
-  EXPECT_EQ(folder.read_xml("<shape type=\"rectangle\"><transform name=\"to_world\"><scale z=\"0\"/></transform></shape>").shapes.size(), 1u);
+  EXPECT_EQ(folder.read_xml("<shape type=\"rectangle\"><transform name=\"to_world\"><scale z=\"0\"/></transform></shape>")
+                .shapes.size(),
+            1u);
 }
 
 TEST(Emitters, UniformSpectraHaveTheColourOfEqualEnergyWhite) {
@@ -138,7 +150,8 @@ TEST(Emitters, UniformSpectraHaveTheColourOfEqualEnergyWhite) {
 
 TEST(Emitters, StandWhereTheyBelong) {
   const SceneFolder folder;
-  EXPECT_EQ(error_of([&] { folder.read_xml("<emitter type=\"area\"/>"); }), "scene.xml:2: emitter \"area\" stands by itself, expected it inside a shape");
+  EXPECT_EQ(error_of([&] { folder.read_xml("<emitter type=\"area\"/>"); }),
+            "scene.xml:2: emitter \"area\" stands by itself, expected it inside a shape");
   EXPECT_EQ(error_of([&] { folder.read_xml("<shape type=\"sphere\"><emitter type=\"point\"/></shape>"); }),
             "scene.xml:2: emitter \"point\" stands inside a shape \"sphere\", expected it directly in the scene");
   EXPECT_EQ(error_of([&] { folder.read_xml("<emitter type=\"constant\"><rgb name=\"radiance\" value=\"-1\"/></emitter>"); }),
@@ -148,13 +161,24 @@ TEST(Emitters, StandWhereTheyBelong) {
 TEST(Cameras, MayBeMirroredButNotScaled) {
   const SceneFolder folder;
   const auto camera = [&](const std::string& inside) {
-    return folder.read_whole_xml("<scene version=\"3.0.0\"><sensor type=\"perspective\">" + inside + "</sensor></scene>").camera;
+    return folder.read_whole_xml("<scene version=\"3.0.0\"><sensor type=\"perspective\">" + inside + "</sensor></scene>")
+        .camera;
   };
   EXPECT_LT(camera("<transform name=\"to_world\"><scale x=\"-1\"/></transform>").to_world.determinant(), 0);
-  EXPECT_NE(error_of([&] { camera("<transform name=\"to_world\"><scale value=\"2\"/></transform>"); }).find("scales or shears the camera"), std::string::npos);
-  EXPECT_NE(error_of([&] { camera("<float name=\"fov\" value=\"180\"/>"); }).find("fov = 180, expected a number in (0, 180)"), std::string::npos);
-  EXPECT_NE(error_of([&] { camera("<float name=\"near_clip\" value=\"2\"/><float name=\"far_clip\" value=\"1\"/>"); }).find("expected more than near_clip = 2"), std::string::npos);
-  EXPECT_NE(error_of([&] { camera("<float name=\"principal_point_offset_x\" value=\"0.1\"/>"); }).find("is not supported yet, expected 0"), std::string::npos);
+  EXPECT_NE(error_of([&] {
+              camera("<transform name=\"to_world\"><scale value=\"2\"/></transform>");
+            }).find("scales or shears the camera"),
+            std::string::npos);
+  EXPECT_NE(error_of([&] { camera("<float name=\"fov\" value=\"180\"/>"); }).find("fov = 180, expected a number in (0, 180)"),
+            std::string::npos);
+  EXPECT_NE(error_of([&] {
+              camera("<float name=\"near_clip\" value=\"2\"/><float name=\"far_clip\" value=\"1\"/>");
+            }).find("expected more than near_clip = 2"),
+            std::string::npos);
+  EXPECT_NE(error_of([&] {
+              camera("<float name=\"principal_point_offset_x\" value=\"0.1\"/>");
+            }).find("is not supported yet, expected 0"),
+            std::string::npos);
 }
 
 }  // namespace

@@ -16,7 +16,8 @@ class SceneFolder {
  public:
   SceneFolder() {
     const auto* test = testing::UnitTest::GetInstance()->current_test_info();
-    path_ = std::filesystem::path(testing::TempDir()) / ("fluxfarm-io-" + std::string(test->test_suite_name()) + "-" + test->name());
+    path_ = std::filesystem::path(testing::TempDir()) /
+            ("fluxfarm-io-" + std::string(test->test_suite_name()) + "-" + test->name());
     std::filesystem::remove_all(path_);
     std::filesystem::create_directories(path_);
   }
@@ -29,7 +30,8 @@ class SceneFolder {
 
   // A scene with a sensor and a light around `body`, which starts on line 2.
   SceneDescription read_xml(const std::string& body, const SceneOverrides& overrides = {}) const {
-    write("scene.xml", "<scene version=\"3.0.0\"><sensor type=\"perspective\"/><emitter type=\"constant\"/>\n" + body + "\n</scene>\n");
+    write("scene.xml",
+          "<scene version=\"3.0.0\"><sensor type=\"perspective\"/><emitter type=\"constant\"/>\n" + body + "\n</scene>\n");
     return read_scene(path_, "scene.xml", overrides);
   }
   SceneDescription read_whole_xml(const std::string& text, const SceneOverrides& overrides = {}) const {

@@ -46,7 +46,8 @@ TEST(SceneForms, XmlAndJsonOfOneSceneGiveTheSameDescription) {
   folder.write("models/a mesh.obj", kObj);
   const std::string from_xml = describe(folder.read_whole_xml(kXml));
   EXPECT_EQ(from_xml, describe(folder.read_json(kJson)));
-  EXPECT_NE(from_xml.find("fov 3 35 clip 0.01 10000\nfilm 320 200 crop 10 0 100 200 filter 1 1"), std::string::npos) << from_xml;
+  EXPECT_NE(from_xml.find("fov 3 35 clip 0.01 10000\nfilm 320 200 crop 10 0 100 200 filter 1 1"), std::string::npos)
+      << from_xml;
 }
 
 TEST(SceneForms, StepsOfATransformApplyInTheOrderOfTheFile) {
@@ -78,7 +79,8 @@ TEST(SceneForms, DefaultsAreMitsubas) {
 
 TEST(SceneForms, DefaultGivesWayToOverride) {
   const SceneFolder folder;
-  const std::string body = "<default name=\"r\" value=\"2\"/><shape type=\"sphere\"><float name=\"radius\" value=\"$r\"/></shape>";
+  const std::string body =
+      "<default name=\"r\" value=\"2\"/><shape type=\"sphere\"><float name=\"radius\" value=\"$r\"/></shape>";
   EXPECT_FLOAT_EQ(std::get<SphereDescription>(folder.read_xml(body).shapes[0].geometry).radius, 2);
   EXPECT_FLOAT_EQ(std::get<SphereDescription>(folder.read_xml(body, {{"r", "3"}}).shapes[0].geometry).radius, 3);
 }
@@ -86,7 +88,9 @@ TEST(SceneForms, DefaultGivesWayToOverride) {
 TEST(SceneForms, OverrideThatTheSceneDoesNotUseIsAnError) {
   const SceneFolder folder;
   const std::string body = "<default name=\"size\" value=\"2\"/>";
-  EXPECT_EQ(error_of([&] { folder.read_xml(body, {{"sise", "3"}}); }),
+  EXPECT_EQ(error_of([&] {
+              folder.read_xml(body, {{"sise", "3"}});
+            }),
             "scene.xml: the scene does not use $sise, which was given from outside; it has $size");
 }
 
@@ -98,8 +102,10 @@ TEST(SceneForms, UnsetNameIsAnErrorWithItsPlace) {
 
 TEST(SceneForms, IncludedFilesAreReadWithTheirOwnPlaces) {
   const SceneFolder folder;
-  folder.write("parts/shapes.xml", "<scene version=\"3.0.0\">\n<shape type=\"sphere\" id=\"s\"><ref id=\"late\"/></shape></scene>");
-  folder.write("parts/material.xml", "<bsdf version=\"3.0.0\" type=\"diffuse\" id=\"late\">\n<rgb name=\"reflectence\" value=\"1\"/></bsdf>");
+  folder.write("parts/shapes.xml",
+               "<scene version=\"3.0.0\">\n<shape type=\"sphere\" id=\"s\"><ref id=\"late\"/></shape></scene>");
+  folder.write("parts/material.xml",
+               "<bsdf version=\"3.0.0\" type=\"diffuse\" id=\"late\">\n<rgb name=\"reflectence\" value=\"1\"/></bsdf>");
   const std::string body = "<include filename=\"parts/shapes.xml\"/><include filename=\"parts/material.xml\"/>";
   EXPECT_EQ(error_of([&] { folder.read_xml(body); }),
             "parts/material.xml:2: bsdf \"diffuse\" has no parameter \"reflectence\"; it takes reflectance");
