@@ -7,7 +7,7 @@ Lines `fake: VERB ARGUMENTS` anywhere in the scene file, for example inside XML 
     fail KIND TEXT     LoadScene answers Failure         warn TEXT        a warning of SceneLoaded
     crash_in_pass B    SIGKILL itself in the pass that begins at sample B
     crash_once FILE    the same in the second pass, but only if FILE is not there yet (it is made first)
-    run_out FILE       RenderTiles answers RESOURCE until FILE is longer than two bytes
+    run_out FILE       RenderTiles answers RESOURCE twice, counting in FILE
     deaf               renders for ever and does not hear Cancel
 
 The sums of a tile depend on (seed, rect, sample range) alone; a film is the digests of all tiles merged so far.
@@ -96,7 +96,7 @@ class FakeEngine:
 
     def render_tiles(self, request_id: int, work: pb.RenderTiles) -> None:
         told = self.scenes[work.scene_digest]
-        if "run_out" in told and len(read(told["run_out"])) <= 2:
+        if "run_out" in told and len(read(told["run_out"])) < 2:
             append(told["run_out"], b"x")
             return self.fail(request_id, pb.FAILURE_KIND_RESOURCE, "out of memory: 8 GiB, expected less")
         while "deaf" in told:

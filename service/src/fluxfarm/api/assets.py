@@ -1,9 +1,11 @@
 """Uploading the files of scenes, by their digests."""
 
+from collections.abc import AsyncIterator
 from typing import Annotated
 
 from fastapi import APIRouter, Path, Request, Response
 
+from fluxfarm.api.body_guard import MAX_DRAINED_BYTES
 from fluxfarm.api.deps import Farm
 from fluxfarm.api.problems import problem_responses
 from fluxfarm.api.schemas import AssetOut, MissingIn, MissingOut
@@ -30,11 +32,13 @@ async def put_asset(
 
     The body is the file itself. It is kept only if its digest is the one in the address; sending it again is harmless.
     """
-    announced = request.headers.get("content-length", "")
-    if announced.isdigit() and int(announced) > farm.max_asset_bytes:
-        raise TooLarge(f"asset {sha256}: {announced} bytes, expected at most {farm.max_asset_bytes}")
-    if not await farm.blobs.put_asset(sha256, request.stream()):
-        response.status_code = 200
+    stream = request.stream()
+    try:
+        new = await farm.blobs.put_asset(sha256, stream)
+    except TooLarge:
+        await _drain(stream)
+        raise
+    response.status_code = 201 if new else 200
     return AssetOut(sha256=sha256)
 
 
@@ -42,3 +46,12 @@ async def put_asset(
 async def missing_assets(wanted: MissingIn, farm: Farm) -> MissingOut:
     """Of the given digests, name those that are not stored yet."""
     return MissingOut(missing=farm.blobs.missing_assets(wanted.sha256))
+
+
+async def _drain(stream: AsyncIterator[bytes]) -> None:
+    """Read some of what is too much: a client reads the reply only when it has sent its body."""
+    length = 0
+    async for chunk in stream:
+        length += len(chunk)
+        if length > MAX_DRAINED_BYTES:
+            return

@@ -16,6 +16,7 @@ Send = Callable[[Message], Awaitable[None]]
 App = Callable[[Message, Receive, Send], Awaitable[None]]
 
 MAX_BODY_BYTES = 4 << 20
+MAX_DRAINED_BYTES = 64 << 20
 MAX_DEPTH = 64
 _STRING = re.compile(rb'"(?:[^"\\]|\\.)*+"', re.DOTALL)
 _BRACKET = re.compile(rb"[\[\]{}]")
@@ -32,17 +33,20 @@ class BodyGuard:
         if scope["type"] != "http" or scope["method"] != "POST":
             await self._app(scope, receive, send)
             return
-        body, disconnected = bytearray(), False
+        body, length, disconnected = bytearray(), 0, False
         while True:
             message = await receive()
             if message["type"] == "http.disconnect":
                 disconnected = True
                 break
-            body += message.get("body", b"")
-            if len(body) > MAX_BODY_BYTES or not message.get("more_body", False):
+            length += len(message.get("body", b""))
+            if length <= MAX_BODY_BYTES:
+                body += message.get("body", b"")
+            # A client reads the reply only when it has sent its body, so some of what is too much is read too.
+            if length > MAX_DRAINED_BYTES or not message.get("more_body", False):
                 break
         reply = None
-        if len(body) > MAX_BODY_BYTES:
+        if length > MAX_BODY_BYTES:
             detail = f"body: longer than {MAX_BODY_BYTES} bytes, the most that is taken; upload files as assets"
             reply = problem(TooLarge.status, TooLarge.code, detail, scope["path"], headers={"Connection": "close"})
         elif (place := too_deep(bytes(body))) is not None:

@@ -2,6 +2,7 @@
 
 import asyncio
 import hashlib
+import json
 import re
 import time
 from typing import Annotated, Any
@@ -44,7 +45,7 @@ async def create_job(
     address. Every file of the scene must have been uploaded before.
     """
     request = await _checked(body, farm)
-    body_sha256 = hashlib.sha256(body.model_dump_json().encode()).hexdigest()
+    body_sha256 = hashlib.sha256(json.dumps(body.model_dump(), sort_keys=True).encode()).hexdigest()
     job_id, new = await farm.orchestrator.create(request, idempotency_key, body_sha256)
     response.headers["Location"] = f"/v1/jobs/{job_id}"
     if not new:

@@ -1,5 +1,6 @@
 """Errors as RFC 9457 problem replies, all of them from here."""
 
+import json
 import logging
 from collections.abc import Sequence
 from http import HTTPStatus
@@ -7,7 +8,7 @@ from typing import Any
 
 from fastapi import FastAPI, Request
 from fastapi.exceptions import RequestValidationError
-from fastapi.responses import JSONResponse
+from fastapi.responses import Response
 from pydantic import BaseModel
 from starlette.exceptions import HTTPException
 
@@ -56,7 +57,7 @@ def problem(
     instance: str | None = None,
     extra: dict[str, Any] | None = None,
     headers: dict[str, str] | None = None,
-) -> JSONResponse:
+) -> Response:
     """One problem reply."""
     body: dict[str, Any] = {
         "type": TYPE_PREFIX + code,
@@ -66,7 +67,8 @@ def problem(
     }
     if instance is not None:
         body["instance"] = instance
-    return JSONResponse(body | (extra or {}), status, headers, MEDIA_TYPE)
+    # As plain ASCII, since what a client sent may not be writable otherwise.
+    return Response(json.dumps(body | (extra or {})), status, headers, MEDIA_TYPE)
 
 
 def install(app: FastAPI) -> None:
@@ -77,14 +79,14 @@ def install(app: FastAPI) -> None:
     app.add_exception_handler(Exception, _internal)
 
 
-async def _farm_error(request: Request, error: Exception) -> JSONResponse:
+async def _farm_error(request: Request, error: Exception) -> Response:
     assert isinstance(error, FarmError)
     if error.status >= 500:
         log.error("request failed", extra={"path": request.url.path, "reason": str(error)})
     return problem(error.status, error.code, str(error), request.url.path, error.extra())
 
 
-async def _malformed(request: Request, error: Exception) -> JSONResponse:
+async def _malformed(request: Request, error: Exception) -> Response:
     assert isinstance(error, RequestValidationError)
     found = [_field_problem(raw) for raw in error.errors()[:20]]
     detail = "; ".join(f"{entry['field']} = {entry['value']}: {entry['message']}" for entry in found[:3])
@@ -92,7 +94,7 @@ async def _malformed(request: Request, error: Exception) -> JSONResponse:
     return problem(BadRequest.status, BadRequest.code, detail, request.url.path, extra)
 
 
-async def _http_error(request: Request, error: Exception) -> JSONResponse:
+async def _http_error(request: Request, error: Exception) -> Response:
     assert isinstance(error, HTTPException)
     if error.status_code == HTTPStatus.NOT_FOUND:
         detail = f"{request.url.path}: nothing has this address; the addresses are listed in /openapi.json"
@@ -106,7 +108,7 @@ async def _http_error(request: Request, error: Exception) -> JSONResponse:
     return problem(error.status_code, code, detail, request.url.path, headers=dict(error.headers or {}))
 
 
-async def _internal(request: Request, error: Exception) -> JSONResponse:
+async def _internal(request: Request, error: Exception) -> Response:
     log.error("unexpected error", exc_info=error, extra={"path": request.url.path})
     detail = "the service met an error that it does not know; its log says more"
     return problem(FarmError.status, FarmError.code, detail, request.url.path)

@@ -33,7 +33,8 @@ JSON_LINES = "application/jsonl"
 @router.get(
     "/v1/jobs/{job_id}/events",
     summary="Watch a job",
-    response_class=EventSourceResponse,
+    # Not EventSourceResponse here: the framework would then take the route for a generator of one fixed form.
+    response_class=StreamingResponse,
     responses=problem_responses(
         404,
         410,
@@ -41,7 +42,7 @@ JSON_LINES = "application/jsonl"
         also={
             200: {
                 "description": "Server-sent events, or JSON Lines if `Accept` asks for them.",
-                "content": {JSON_LINES: {}},
+                "content": {"text/event-stream": {}, JSON_LINES: {}},
             }
         },
     ),

@@ -57,9 +57,7 @@ def collect(scene: Path) -> LocalBundle:
 def _collect_from(file: Path, base: Path, places: set[Path], names: dict[str, str], depth: int) -> None:
     """Add what `file` references; relative names start at `base`, the folder of the scene file."""
     if depth > MAX_INCLUDE_DEPTH:
-        raise CommandError(
-            Exit.BAD_INPUT, f"{file}: includes are nested deeper than {MAX_INCLUDE_DEPTH}"
-        )
+        raise CommandError(Exit.BAD_INPUT, f"{file}: includes are nested deeper than {MAX_INCLUDE_DEPTH}")
     for reference in references(file, names):
         name = _substituted(reference.name, names)
         if name is None:

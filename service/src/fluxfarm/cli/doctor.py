@@ -84,7 +84,5 @@ def _scenes(settings: Settings) -> Finding:
     folder: Path | None = scenes_folder(settings)
     names = [] if folder is None else sorted(path.parent.name for path in folder.glob("*/scene.xml"))
     if not names:
-        return Finding(
-            "built-in scenes", None, "none found; set FLUXFARM_SCENES to the repository's folder scenes/"
-        )
+        return Finding("built-in scenes", None, "none found; set FLUXFARM_SCENES to the repository's folder scenes/")
     return Finding("built-in scenes", True, ", ".join(names))

@@ -9,7 +9,7 @@ import logging
 import time
 import uuid
 from collections.abc import Awaitable, Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TypeVar
 
@@ -400,6 +400,7 @@ class Orchestrator:
                 f"{facts.width}x{facts.height} pixels",
             )
         else:
+            facts = replace(facts, crop=crop)
             grid = TileGrid(crop, self._settings.tile_size)
             await self._ledger.record_facts(outcome.lease.fence, run.id, facts, grid)
             run.start(facts, grid, None, time.monotonic())
