@@ -11,7 +11,7 @@ PROBLEM = "urn:fluxfarm:problem:"
 SHA = "a" * 64
 BAD_MEMBERS: list[tuple[str, dict[str, Any], str]] = [
     ("unknown member", {"sampels": 3}, "sampels"),
-    ("unknown member that cannot be written", {"\ud800": 3}, "\ud800"),
+    ("unknown member that cannot be written", {"\ud800": 3}, "body"),
     ("negative samples", {"goal": {"spp": -1}}, "goal.spp"),
     ("no samples", {"goal": {"spp": 0}}, "goal.spp"),
     ("fractional samples", {"goal": {"spp": 2.5}}, "goal.spp"),

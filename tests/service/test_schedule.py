@@ -1,5 +1,7 @@
 """The schedule of passes and the decision to stop."""
 
+from itertools import pairwise
+
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -18,7 +20,7 @@ def test_passes_cover_each_sample_exactly_once(goal: int) -> None:
     ranges = list(passes(goal))
     assert ranges[0].begin == 0
     assert ranges[-1].end == goal
-    assert all(before.end == after.begin for before, after in zip(ranges, ranges[1:], strict=False))
+    assert all(before.end == after.begin for before, after in pairwise(ranges))
     assert all(0 < samples.count <= PASS_CEILING_SPP for samples in ranges)
     assert len(ranges) == pass_count(goal)
 

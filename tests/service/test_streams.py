@@ -101,7 +101,7 @@ def test_frames_are_complete_images_whose_samples_rise(client: Client) -> None:
 
 
 def test_slow_readers_neither_stop_the_job_nor_lose_its_end(client: Client) -> None:
-    job_id = client.submit("fake: size 160 160\nfake: spp 16\n")
+    job_id = client.submit("fake: size 64 64\nfake: spp 16\n")
     host, port = client.url.removeprefix("http://").split(":")
     readers = []
     for path in ("frames", "events"):
@@ -142,10 +142,10 @@ def test_memory_does_not_grow_with_a_reader_that_never_reads(client: Client) -> 
         pages = int(Path("/proc/self/statm").read_text().split()[1])
         return pages * 4096 / 2**20
 
-    client.succeed(client.submit("fake: size 320 320\nfake: spp 1\n"))
+    client.succeed(client.submit("fake: size 160 160\nfake: spp 1\n"))
     host, port = client.url.removeprefix("http://").split(":")
     before = resident_mib()
-    job_id = client.submit("fake: size 320 320\nfake: spp 4\n")
+    job_id = client.submit("fake: size 160 160\nfake: spp 4\n")
     stuck = []
     for _ in range(20):
         reader = socket.create_connection((host, int(port)))
