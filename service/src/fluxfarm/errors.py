@@ -17,6 +17,7 @@
     |   +-- StaleLease            409 stale-lease
     +-- TooLarge                  413 too-large
     +-- EngineTrouble             503 engine-trouble
+    +-- DiskFull                  507 disk-full
     +-- StartError                (ends the program before it serves)
         +-- DataFolderInUse
         +-- StoreDamaged
@@ -159,6 +160,13 @@ class EngineTrouble(FarmError):
 
     status = 503
     code = "engine-trouble"
+
+
+class DiskFull(FarmError):
+    """There is no room for an upload."""
+
+    status = 507
+    code = "disk-full"
 
 
 class StartError(FarmError):

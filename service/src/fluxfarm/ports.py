@@ -320,7 +320,7 @@ class BlobStore(Protocol):
     """Files known by the SHA-256 of their content. What was put survives a crash of the machine."""
 
     async def put_asset(self, sha256: str, chunks: AsyncIterable[bytes]) -> bool:
-        """Store an upload; True if it is new. Raises DigestMismatch or TooLarge."""
+        """Store an upload; True if it is new. Raises DigestMismatch, TooLarge or DiskFull."""
 
     def missing_assets(self, digests: Sequence[str]) -> list[str]:
         """Those of `digests` that are not stored, in order, each once."""

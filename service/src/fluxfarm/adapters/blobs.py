@@ -13,6 +13,7 @@ A file gets its final name only after its bytes are synced, and the folder is sy
 """
 
 import asyncio
+import errno
 import hashlib
 import os
 import shutil
@@ -23,7 +24,7 @@ from pathlib import Path
 from typing import TypeVar
 
 from fluxfarm.domain.scene import SceneBundle
-from fluxfarm.errors import DigestMismatch, TooLarge
+from fluxfarm.errors import DigestMismatch, DiskFull, TooLarge
 
 T = TypeVar("T")
 BUFFER_BYTES = 1 << 20
@@ -50,7 +51,7 @@ class FileBlobStore:
     # ---- uploads and bundles ----
 
     async def put_asset(self, sha256: str, chunks: AsyncIterable[bytes]) -> bool:
-        """Store an upload; True if it is new. Raises DigestMismatch or TooLarge."""
+        """Store an upload; True if it is new. Raises DigestMismatch, TooLarge or DiskFull."""
         temporary = self._root / "incoming" / uuid.uuid4().hex
         hasher, size, buffer = hashlib.sha256(), 0, bytearray()
         file = await self._in_thread(lambda: temporary.open("wb", buffering=0))
@@ -72,6 +73,10 @@ class FileBlobStore:
             if hasher.hexdigest() != sha256:
                 raise DigestMismatch("sha256", sha256, f"the {size} bytes sent have the digest {hasher.hexdigest()}")
             return await self._in_thread(lambda: self._keep_asset(temporary, sha256))
+        except OSError as error:
+            if error.errno not in (errno.ENOSPC, errno.EDQUOT):
+                raise
+            raise DiskFull(f"asset {sha256}: no room for it in the data folder: {error.strerror}") from None
         finally:
             file.close()
             temporary.unlink(missing_ok=True)

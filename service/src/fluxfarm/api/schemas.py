@@ -5,6 +5,7 @@ from typing import Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, field_validator, model_validator
 
+from fluxfarm.domain.goal import settled
 from fluxfarm.domain.job import JobState
 from fluxfarm.domain.progress import Progress
 from fluxfarm.ports import JobRecord, Revision
@@ -190,6 +191,7 @@ def job_out(record: JobRecord, progress: Progress) -> JobOut:
     if request.builtin is not None:
         scene = {"builtin": request.builtin}
     size = (facts.width, facts.height) if facts is not None else request.size
+    goal = request.goal if facts is None else settled(request.goal, facts.scene_spp)
     crop = record.grid.crop if record.grid is not None else request.crop
     return JobOut(
         id=record.id,
@@ -201,7 +203,7 @@ def job_out(record: JobRecord, progress: Progress) -> JobOut:
         size=None if size is None else {"width": size[0], "height": size[1]},
         crop=None if crop is None else {"x": crop.x, "y": crop.y, "width": crop.width, "height": crop.height},
         integrator=request.integrator if facts is None else facts.integrator,
-        goal=_present(request.goal.rel_error, request.goal.spp, request.goal.seconds) or None,
+        goal=_present(goal.rel_error, goal.spp, goal.seconds) or None,
         limits=_present(None, request.limits.spp, request.limits.seconds),
         priority=request.priority,
         seed=request.seed,

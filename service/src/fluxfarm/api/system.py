@@ -12,7 +12,6 @@ from starlette.status import HTTP_503_SERVICE_UNAVAILABLE
 
 import fluxfarm
 from fluxfarm.api.deps import Farm
-from fluxfarm.api.problems import problem_responses
 
 router = APIRouter(tags=["system"])
 LEAST_FREE_BYTES = 1 << 30
@@ -100,7 +99,7 @@ async def system(farm: Farm) -> SystemOut:
     )
 
 
-@router.get("/healthz", summary="Health", responses=problem_responses(503))
+@router.get("/healthz", summary="Health", responses={503: {"model": HealthOut, "description": "It cannot render."}})
 async def healthz(farm: Farm, response: Response) -> HealthOut:
     """200 while the ledger answers and an engine process starts; for load balancers."""
     await farm.ledger.highest_fence()

@@ -115,6 +115,7 @@ class Dispatcher:
             await self._ledger.change_state(run.id, JobState.PREPARING)
             run.state = JobState.PREPARING
             lease = PrepareLease(self.new_fence(), run.id, run.scene)
+            run.single_lease = lease.fence
         elif run.state in (JobState.RUNNING, JobState.FINALIZING):
             lease = self._merge_lease(run)
             if lease is None and self._committer.backlog_bytes < MOST_BACKLOG_BYTES:
@@ -134,10 +135,10 @@ class Dispatcher:
 
     def _merge_lease(self, run: JobRun) -> MergeLease | None:
         ready = run.mergeable()
-        if run.merging or not ready or run.facts is None or run.grid is None:
+        if run.single_lease is not None or not ready or run.facts is None or run.grid is None:
             return None
-        run.merging = True
         fence, facts, newest = self.new_fence(), run.facts, run.newest
+        run.single_lease = fence
         film = None if newest is None else newest.film
         return MergeLease(
             fence=fence,

@@ -13,6 +13,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TypeVar
 
+from fluxfarm.domain.goal import ceiling_spp, settled
 from fluxfarm.domain.job import TERMINAL_STATES, JobState
 from fluxfarm.domain.progress import Progress, eta_seconds
 from fluxfarm.domain.scene import check_bundle
@@ -161,13 +162,13 @@ class Orchestrator:
     def progress(self, record: JobRecord) -> Progress:
         """How far a job is, including samples that no committed tile contains yet."""
         run = self._runs.get(record.id)
-        goal = record.request.goal if run is None else run.goal
         if record.grid is None or record.facts is None:
             return Progress(0, 0, 0, 0, None, None)
+        goal = settled(record.request.goal, record.facts.scene_spp)
         samples = record.samples_done + (0 if run is None else run.samples_in_flight())
         running_s = record.running_s if run is None else run.running_s(time.monotonic())
         error = None if record.newest is None else record.newest.error_noise
-        ceiling = None if run is None else run.ceiling
+        ceiling = ceiling_spp(goal, record.request.limits)
         passes = record.passes_opened
         if goal.spp is not None and record.state not in TERMINAL_STATES:
             passes = max(passes, pass_count(ceiling or goal.spp))
@@ -327,8 +328,8 @@ class Orchestrator:
         run = self._runs.get(outcome.lease.job_id)
         if isinstance(outcome.lease, WriteTileLease):
             self._dispatcher.settle(outcome)
-        elif run is None:
-            return
+        elif run is None or not run.has_lease(outcome.lease.fence):
+            self._drop_stale(outcome)
         elif isinstance(outcome, TileRendered):
             self._on_tile(run, outcome)
         elif isinstance(outcome, SamplesTaken):
@@ -344,6 +345,13 @@ class Orchestrator:
         elif isinstance(outcome, LeaseFailed):
             kind = None if outcome.kind is FailureKind.CANCELLED else outcome.kind
             await self._on_fault(run, outcome.lease, kind, outcome.message)
+
+    def _drop_stale(self, outcome: Outcome) -> None:
+        """Forget what a revoked lease brings, and the files that it wrote."""
+        if isinstance(outcome, TileRendered):
+            self.tallies.stale_tiles += 1
+        elif isinstance(outcome.lease, MergeLease):
+            self._background(self._blobs.drop(_outputs(outcome.lease)))
 
     def _on_tile(self, run: JobRun, outcome: TileRendered) -> None:
         lease, rect = outcome.lease, outcome.lease.rects[outcome.position]
@@ -403,6 +411,7 @@ class Orchestrator:
             facts = replace(facts, crop=crop)
             grid = TileGrid(crop, self._settings.tile_size)
             await self._ledger.record_facts(outcome.lease.fence, run.id, facts, grid)
+            run.end_lease(outcome.lease.fence)
             run.start(facts, grid, None, time.monotonic())
             self.watch.notify(run.id)
 
@@ -435,11 +444,13 @@ class Orchestrator:
             return
         if isinstance(lease, RenderLease):
             self._committer.end(lease.fence)
-        elif isinstance(lease, PrepareLease) and run.state is JobState.PREPARING:
+            return
+        await self._ledger.commit_tiles([], [lease.fence])
+        run.end_lease(lease.fence)
+        if isinstance(lease, PrepareLease):
             await self._to(run, JobState.QUEUED)
         elif isinstance(lease, MergeLease):
-            await self._ledger.commit_tiles([], [lease.fence])
-            run.merging = False
+            await self._blobs.drop(_outputs(lease))
 
     async def _count_failure(self, run: JobRun, kind: FailureKind, message: str) -> bool:
         """Count a failure; returns True if it was one too many and the job failed."""
@@ -469,3 +480,8 @@ class Orchestrator:
         await self._ledger.change_state(run.id, state, reason, run.running_s(time.monotonic()))
         run.state = state
         self.watch.notify(run.id)
+
+
+def _outputs(lease: MergeLease) -> list[Path]:
+    """The files that a merge writes before they are adopted."""
+    return [lease.film_out, lease.exr_out, lease.png_out]

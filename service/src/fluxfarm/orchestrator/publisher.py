@@ -4,6 +4,7 @@ import asyncio
 import time
 from pathlib import Path
 
+from fluxfarm.errors import StaleLease
 from fluxfarm.ports import BlobStore, Ledger, Merged, Revision
 
 
@@ -33,7 +34,12 @@ async def publish(
         film=film,
         at=time.time(),
     )
-    tiles = await ledger.record_revision(lease.fence, lease.job_id, revision)
+    kept = set() if before is None else {before.exr, before.png, before.film}
+    try:
+        tiles = await ledger.record_revision(lease.fence, lease.job_id, revision)
+    except StaleLease:
+        await blobs.drop([blobs.output(lease.job_id, sha256) for sha256 in (film, exr, png) if sha256 not in kept])
+        raise
     unused: list[Path] = [blobs.tile(lease.job_id, sha256) for sha256 in tiles]
     if before is not None and before.film is not None and before.film != film:
         unused.append(blobs.output(lease.job_id, before.film))

@@ -7,7 +7,7 @@ be rebuilt from the ledger.
 from collections import deque
 from dataclasses import dataclass, field
 
-from fluxfarm.domain.goal import Goal, Measured, Stop, ceiling_spp, has_barriers, next_pass, settled
+from fluxfarm.domain.goal import Measured, Stop, has_barriers, next_pass, settled
 from fluxfarm.domain.job import JobState
 from fluxfarm.domain.schedule import SampleRange
 from fluxfarm.domain.tiles import TileGrid
@@ -47,7 +47,8 @@ class JobRun:
         self.state = record.state
         self.crashes = record.crashes
         self.facts: SceneFacts | None = None
-        self.merging = False
+        # The lease that prepares the scene or merges a pass; there is at most one of them at a time.
+        self.single_lease: int | None = None
         self._grid: TileGrid | None = None
         self._goal = record.request.goal
         self._passes: dict[int, PassRun] = {}
@@ -142,6 +143,8 @@ class JobRun:
 
     def end_lease(self, fence: int) -> None:
         """The lease is over; its tiles that are not done become pending again, in front."""
+        if fence == self.single_lease:
+            self.single_lease = None
         lease = self._leases.pop(fence, None)
         self._in_flight.pop(fence, None)
         work = None if lease is None else self._passes.get(lease.pass_index)
@@ -153,7 +156,7 @@ class JobRun:
 
     def publish(self, revision: Revision) -> None:
         """A revision contains all passes before `revision.passes`."""
-        self.merging = False
+        self.single_lease = None
         for index in [index for index in self._passes if index < revision.passes]:
             self._merged_spp = self._passes.pop(index).samples.end
         self._merged_passes = revision.passes
@@ -173,8 +176,8 @@ class JobRun:
         return ready
 
     def has_lease(self, fence: int) -> bool:
-        """Whether a render lease of this run is still open."""
-        return fence in self._leases
+        """Whether a lease of this run is still open; those of a run before a pause are not."""
+        return fence in self._leases or fence == self.single_lease
 
     @property
     def newest(self) -> Revision | None:
@@ -194,22 +197,12 @@ class JobRun:
     @property
     def all_merged(self) -> bool:
         """Whether the newest revision contains everything."""
-        return not self._passes and not self.merging
+        return not self._passes and self.single_lease is None
 
     @property
     def grid(self) -> TileGrid | None:
         """The tiles, once the scene is known."""
         return self._grid
-
-    @property
-    def goal(self) -> Goal:
-        """The goal; never absent once the scene is known."""
-        return self._goal
-
-    @property
-    def ceiling(self) -> int | None:
-        """Most samples per pixel that will be taken."""
-        return ceiling_spp(self._goal, self.request.limits)
 
     def samples_in_flight(self) -> int:
         """Camera samples that engine processes report beyond the committed tiles."""
