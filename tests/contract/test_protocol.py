@@ -9,9 +9,9 @@ from hypothesis import strategies as st
 
 from fluxfarm.adapters.engine import codec
 from fluxfarm.adapters.protocol import engine_pb2 as pb
+from fluxfarm.domain.leases import FailureKind, LeaseFailed, RenderLease, SceneRef, TileRendered
 from fluxfarm.domain.schedule import SampleRange
 from fluxfarm.domain.tiles import PixelRect
-from fluxfarm.ports import FailureKind, LeaseFailed, RenderLease, SceneRef, TileRendered
 
 SCENE = SceneRef("key", Path("/scene"), "scene.xml", 0, 0, "")
 RECTS = (PixelRect(0, 0, 16, 16), PixelRect(16, 0, 8, 16))

@@ -19,6 +19,7 @@ from fluxfarm.adapters.ledger.database import migrate
 from fluxfarm.domain.events import EventKind
 from fluxfarm.domain.goal import Goal, Limits
 from fluxfarm.domain.job import STATE_SENTENCES, TERMINAL_STATES, TRANSITIONS, JobState
+from fluxfarm.domain.records import JobRequest, Revision, SceneFacts, TileCommit
 from fluxfarm.domain.scene import SceneBundle
 from fluxfarm.domain.tiles import PixelRect, TileGrid
 from fluxfarm.errors import (
@@ -30,7 +31,6 @@ from fluxfarm.errors import (
     StaleLease,
     StoreDamaged,
 )
-from fluxfarm.ports import JobRequest, Revision, SceneFacts, TileCommit
 
 REQUEST = JobRequest(
     name="a",

@@ -1,280 +1,28 @@
-"""The seams of the service: what the orchestrator asks of a worker pool, a ledger and a blob store.
+"""The seams of the service: what the orchestrator asks of a worker pool, a blob store and a ledger.
 
-Values first, then the three roles. Adapters implement the roles; tests replace them.
+Adapters implement the roles; tests replace them. The values that cross them are in `domain/leases.py` and
+`domain/records.py`.
 """
 
 from collections.abc import AsyncIterable, AsyncIterator, Sequence
 from dataclasses import dataclass, field
-from enum import StrEnum
 from pathlib import Path
-from typing import Any, Protocol
+from typing import Protocol
 
 from fluxfarm.domain.events import Event
-from fluxfarm.domain.goal import Goal, Limits
 from fluxfarm.domain.job import JobState
+from fluxfarm.domain.leases import Lease, Outcome
+from fluxfarm.domain.records import (
+    JobRecord,
+    JobRequest,
+    Revision,
+    SceneFacts,
+    TileCommit,
+    Unmerged,
+)
 from fluxfarm.domain.scene import SceneBundle
 from fluxfarm.domain.schedule import SampleRange
-from fluxfarm.domain.tiles import PixelRect, TileGrid
-
-# ---- jobs as they are kept ----
-
-
-@dataclass(frozen=True, slots=True)
-class JobRequest:
-    """A checked request: what the owner asked for. `size` (width, height) and `crop` are in pixels."""
-
-    name: str
-    bundle: SceneBundle
-    builtin: str | None
-    size: tuple[int, int] | None
-    crop: PixelRect | None
-    integrator: str | None
-    goal: Goal
-    limits: Limits
-    priority: int
-    seed: int
-
-
-@dataclass(frozen=True, slots=True)
-class SceneFacts:
-    """What the engine found in the scene. `scene_spp` is 0 when the file does not say."""
-
-    width: int
-    height: int
-    crop: PixelRect
-    scene_spp: int
-    integrator: str
-    warnings: tuple[str, ...]
-    plan: dict[str, Any]
-    seconds: float
-
-
-@dataclass(frozen=True, slots=True)
-class Revision:
-    """A published image. Digests name files of the job; `film` is gone once a newer revision is recorded."""
-
-    number: int
-    passes: int
-    min_samples: int
-    max_samples: int
-    error_noise: float | None
-    mean: tuple[float, float, float]
-    non_finite_samples: int
-    running_s: float
-    exr: str
-    exr_bytes: int
-    png: str
-    film: str | None
-    at: float
-
-
-@dataclass(frozen=True, slots=True)
-class JobRecord:
-    """A job as the ledger knows it. `facts` and `grid` are None before the scene was prepared."""
-
-    id: str
-    state: JobState
-    reason: str | None
-    request: JobRequest
-    created_at: float
-    facts: SceneFacts | None
-    grid: TileGrid | None
-    warnings: tuple[str, ...]
-    tiles_done: int
-    samples_done: int
-    rays: int
-    non_finite_samples: int
-    passes_opened: int
-    running_s: float
-    crashes: int
-    resource_failures: int
-    newest: Revision | None
-
-
-@dataclass(frozen=True, slots=True)
-class StoredTile:
-    """A committed tile of a pass that no film contains yet."""
-
-    pass_index: int
-    tile: int
-    sha256: str
-
-
-@dataclass(frozen=True, slots=True)
-class Unmerged:
-    """What a restart needs of a job: samples per pixel in the newest revision, passes opened after it, their tiles."""
-
-    merged_spp: int
-    passes: tuple[tuple[int, SampleRange], ...]
-    tiles: tuple[StoredTile, ...]
-
-
-# ---- leases and what comes back ----
-
-
-@dataclass(frozen=True, slots=True)
-class SceneRef:
-    """A scene for an engine process. `key` differs whenever anything below differs; zeros and "": as the scene says."""
-
-    key: str
-    folder: Path
-    entry: str
-    width: int
-    height: int
-    integrator: str
-
-
-@dataclass(frozen=True, slots=True)
-class ImageInfo:
-    """Goes into the header of an image."""
-
-    job_id: str
-    scene_digest: str
-    integrator: str
-    seed: int
-
-
-@dataclass(frozen=True, slots=True)
-class Lease:
-    """Work for one engine process, complete in itself. `fence` is unique and rises; a revoked fence commits nothing."""
-
-    fence: int
-    job_id: str
-
-
-@dataclass(frozen=True, slots=True)
-class PrepareLease(Lease):
-    """Read and compile the scene."""
-
-    scene: SceneRef
-
-
-@dataclass(frozen=True, slots=True)
-class RenderLease(Lease):
-    """Take `samples` of every pixel of `rects`; `tiles` are the grid's indices of the same tiles."""
-
-    scene: SceneRef
-    width: int
-    height: int
-    integrator: str
-    seed: int
-    pass_index: int
-    samples: SampleRange
-    tiles: tuple[int, ...]
-    rects: tuple[PixelRect, ...]
-
-
-@dataclass(frozen=True, slots=True)
-class MergeLease(Lease):
-    """Add finished tiles to the film and write the film, the image and its preview."""
-
-    width: int
-    height: int
-    crop: PixelRect
-    film_in: Path | None
-    tiles: tuple[Path, ...]
-    film_out: Path
-    exr_out: Path
-    png_out: Path
-    info: ImageInfo
-    passes: int
-
-
-@dataclass(frozen=True, slots=True)
-class WriteTileLease(Lease):
-    """Write one rect of the film, with tiles that are not in it yet, as an image of its own."""
-
-    width: int
-    height: int
-    rect: PixelRect
-    film_in: Path | None
-    tiles: tuple[Path, ...]
-    exr_out: Path
-    info: ImageInfo
-
-
-class FailureKind(StrEnum):
-    """Why an engine process refused: only RESOURCE is worth another try elsewhere or later."""
-
-    SCENE = "SCENE"
-    RESOURCE = "RESOURCE"
-    INTERNAL = "INTERNAL"
-    CANCELLED = "CANCELLED"
-
-
-@dataclass(frozen=True, slots=True)
-class Prepared:
-    """The scene is compiled."""
-
-    lease: PrepareLease
-    facts: SceneFacts
-
-
-@dataclass(frozen=True, slots=True)
-class SamplesTaken:
-    """`samples` camera samples of the lease are finished so far."""
-
-    lease: RenderLease
-    samples: int
-
-
-@dataclass(frozen=True, slots=True)
-class TileRendered:
-    """The tile at `position` of the lease. `seconds` on one thread."""
-
-    lease: RenderLease
-    position: int
-    sums: bytes
-    seconds: float
-    rays: int
-    non_finite_samples: int
-
-
-@dataclass(frozen=True, slots=True)
-class TilesFinished:
-    """Every tile of the lease was reported."""
-
-    lease: RenderLease
-
-
-@dataclass(frozen=True, slots=True)
-class Merged:
-    """The files of the lease are written and closed, but not yet synced."""
-
-    lease: MergeLease
-    min_samples: int
-    max_samples: int
-    error_noise: float | None
-    mean: tuple[float, float, float]
-    non_finite_samples: int
-
-
-@dataclass(frozen=True, slots=True)
-class TileWritten:
-    """The image of the tile is written."""
-
-    lease: WriteTileLease
-
-
-@dataclass(frozen=True, slots=True)
-class LeaseFailed:
-    """The engine process refused the lease and lives on."""
-
-    lease: Lease
-    kind: FailureKind
-    message: str
-
-
-@dataclass(frozen=True, slots=True)
-class LeaseLost:
-    """The engine process died or was stopped; `blamed` if it was working on this lease when it died."""
-
-    lease: Lease
-    reason: str
-    blamed: bool
-
-
-Outcome = Prepared | SamplesTaken | TileRendered | TilesFinished | Merged | TileWritten | LeaseFailed | LeaseLost
+from fluxfarm.domain.tiles import TileGrid
 
 
 @dataclass(frozen=True, slots=True)
@@ -313,9 +61,6 @@ class WorkerPool(Protocol):
         """End all processes and wait until they are gone."""
 
 
-# ---- files ----
-
-
 class BlobStore(Protocol):
     """Files known by the SHA-256 of their content. What was put survives a crash of the machine."""
 
@@ -351,27 +96,6 @@ class BlobStore(Protocol):
 
     async def drop_job(self, job_id: str) -> None:
         """Remove all files of a job."""
-
-
-# ---- the ledger ----
-
-
-@dataclass(frozen=True, slots=True)
-class TileCommit:
-    """A stored tile that asks to be counted."""
-
-    fence: int
-    job_id: str
-    pass_index: int
-    tile: int
-    column: int
-    row: int
-    rect: PixelRect
-    samples: int
-    sha256: str
-    seconds: float
-    rays: int
-    non_finite_samples: int
 
 
 class Ledger(Protocol):

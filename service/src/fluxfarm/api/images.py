@@ -12,8 +12,8 @@ from starlette.background import BackgroundTask
 
 from fluxfarm.api.deps import Farm, JobId, Services
 from fluxfarm.api.problems import problem, problem_responses
+from fluxfarm.domain.records import Revision
 from fluxfarm.errors import Conflict, NotYetThere
-from fluxfarm.ports import Revision
 
 router = APIRouter(tags=["images"])
 EXR = "image/x-exr"

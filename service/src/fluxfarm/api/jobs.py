@@ -14,10 +14,10 @@ from fluxfarm.api.problems import problem_responses
 from fluxfarm.api.schemas import JobIn, JobOut, JobsOut, RevisionsOut, job_out, revision_out
 from fluxfarm.domain.goal import Goal, Limits
 from fluxfarm.domain.job import TERMINAL_STATES, JobState
+from fluxfarm.domain.records import JobRequest
 from fluxfarm.domain.scene import SceneBundle
 from fluxfarm.domain.tiles import PixelRect
 from fluxfarm.errors import BadRequest, UnknownBuiltin
-from fluxfarm.ports import JobRequest
 
 router = APIRouter(tags=["jobs"])
 LONGEST_WAIT_S = 60.0

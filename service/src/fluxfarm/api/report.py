@@ -11,8 +11,8 @@ from fluxfarm.api.problems import problem_responses
 from fluxfarm.api.schemas import RevisionOut, revision_out
 from fluxfarm.domain.events import Event, EventKind
 from fluxfarm.domain.job import JobState
+from fluxfarm.domain.records import JobRecord, Revision
 from fluxfarm.errors import NotYetThere
-from fluxfarm.ports import JobRecord, Revision
 
 router = APIRouter(tags=["reports"])
 WIDTH, HEIGHT, MARGIN = 640, 400, 56

@@ -8,7 +8,7 @@ from pydantic import BaseModel, ConfigDict, Field, field_validator, model_valida
 from fluxfarm.domain.goal import settled
 from fluxfarm.domain.job import JobState
 from fluxfarm.domain.progress import Progress
-from fluxfarm.ports import JobRecord, Revision
+from fluxfarm.domain.records import JobRecord, Revision
 
 MAX_SIDE = 65_536
 MAX_SPP = 1 << 24

@@ -20,8 +20,8 @@ from fluxfarm.api.problems import problem_responses
 from fluxfarm.api.schemas import iso_time
 from fluxfarm.domain.events import Event, EventKind
 from fluxfarm.domain.job import TERMINAL_STATES
+from fluxfarm.domain.records import Revision
 from fluxfarm.errors import BadRequest, FarmError
-from fluxfarm.ports import Revision
 
 router = APIRouter(tags=["streams"])
 PAGE = 500

@@ -10,7 +10,8 @@ import time
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 
-from fluxfarm.ports import BlobStore, Ledger, TileCommit
+from fluxfarm.domain.records import TileCommit
+from fluxfarm.ports import BlobStore, Ledger
 
 log = logging.getLogger(__name__)
 

@@ -12,25 +12,22 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from fluxfarm.domain.job import JobState
-from fluxfarm.errors import EngineTrouble
-from fluxfarm.orchestrator.committer import Committer
-from fluxfarm.orchestrator.run import JobRun
-from fluxfarm.ports import (
-    BlobStore,
+from fluxfarm.domain.leases import (
     ImageInfo,
-    JobRequest,
     Lease,
     LeaseFailed,
     LeaseLost,
-    Ledger,
     MergeLease,
     Outcome,
     PrepareLease,
     SceneRef,
-    WorkerInfo,
-    WorkerPool,
     WriteTileLease,
 )
+from fluxfarm.domain.records import JobRequest
+from fluxfarm.errors import EngineTrouble
+from fluxfarm.orchestrator.committer import Committer
+from fluxfarm.orchestrator.run import JobRun
+from fluxfarm.ports import BlobStore, Ledger, WorkerInfo, WorkerPool
 
 WINDOW = 2
 # Above this, rendering waits until the disk has caught up.

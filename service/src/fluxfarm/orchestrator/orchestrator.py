@@ -8,48 +8,43 @@ import asyncio
 import logging
 import time
 import uuid
-from collections.abc import Awaitable, Callable
+from collections.abc import Awaitable
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TypeVar
 
-from fluxfarm.domain.goal import ceiling_spp, settled
 from fluxfarm.domain.job import TERMINAL_STATES, JobState
-from fluxfarm.domain.progress import Progress, eta_seconds
-from fluxfarm.domain.scene import check_bundle
-from fluxfarm.domain.schedule import pass_count
-from fluxfarm.domain.tiles import PixelRect, TileGrid
-from fluxfarm.errors import AssetsMissing, EngineTrouble, NotYetThere, StaleLease, TileOutsideFrame
-from fluxfarm.orchestrator.committer import Batch, Committer
-from fluxfarm.orchestrator.dispatch import Dispatcher, scene_ref
-from fluxfarm.orchestrator.publisher import publish
-from fluxfarm.orchestrator.run import JobRun
-from fluxfarm.orchestrator.tallies import Tallies
-from fluxfarm.orchestrator.watch import Watch
-from fluxfarm.ports import (
-    BlobStore,
+from fluxfarm.domain.leases import (
     FailureKind,
-    ImageInfo,
-    JobRecord,
-    JobRequest,
     Lease,
     LeaseFailed,
     LeaseLost,
-    Ledger,
     Merged,
     MergeLease,
     Outcome,
     Prepared,
     PrepareLease,
     RenderLease,
-    Revision,
     SamplesTaken,
-    TileCommit,
     TileRendered,
     TilesFinished,
-    WorkerPool,
     WriteTileLease,
 )
+from fluxfarm.domain.progress import Progress
+from fluxfarm.domain.records import JobRecord, JobRequest, Revision, TileCommit
+from fluxfarm.domain.scene import check_bundle
+from fluxfarm.domain.tiles import PixelRect, TileGrid
+from fluxfarm.errors import AssetsMissing, EngineTrouble, StaleLease
+from fluxfarm.orchestrator.committer import Batch, Committer
+from fluxfarm.orchestrator.dispatch import Dispatcher, scene_ref
+from fluxfarm.orchestrator.inbox import Inbox
+from fluxfarm.orchestrator.publisher import publish
+from fluxfarm.orchestrator.run import JobRun
+from fluxfarm.orchestrator.status import progress_of
+from fluxfarm.orchestrator.tallies import Tallies
+from fluxfarm.orchestrator.tile_images import tile_lease
+from fluxfarm.orchestrator.watch import Watch
+from fluxfarm.ports import BlobStore, Ledger, WorkerPool
 
 T = TypeVar("T")
 log = logging.getLogger(__name__)
@@ -80,7 +75,7 @@ class Orchestrator:
         self._pool = pool
         self._settings = settings
         self._runs: dict[str, JobRun] = {}
-        self._inbox: asyncio.Queue[Callable[[], Awaitable[None]]] = asyncio.Queue()
+        self._inbox = Inbox()
         self._committer = Committer(ledger, blobs, self._report_batch)
         self._dispatcher = Dispatcher(ledger, blobs, pool, self._committer, settings.lease_s)
         self._tasks: set[asyncio.Task[None]] = set()
@@ -120,33 +115,34 @@ class Orchestrator:
         wanted_id = str(uuid.uuid4())
         job_id = await self._ledger.add_job(wanted_id, request, key, body_sha256)
         if job_id == wanted_id:
-            await self._ask(lambda: self._begin(job_id))
+            await self._inbox.ask(lambda: self._begin(job_id))
         return job_id, job_id == wanted_id
 
     async def cancel(self, job_id: str) -> None:
         """Give a job up; when this returns, no tile of it is committed any more. Again: no effect."""
-        await self._ask(lambda: self._halt(job_id, JobState.CANCELLED))
+        await self._inbox.ask(lambda: self._halt(job_id, JobState.CANCELLED))
 
     async def pause(self, job_id: str) -> None:
         """Stop a job for now. Again on a paused job: no effect."""
-        await self._ask(lambda: self._halt(job_id, JobState.PAUSED))
+        await self._inbox.ask(lambda: self._halt(job_id, JobState.PAUSED))
 
     async def resume(self, job_id: str) -> None:
         """Let a paused job go on. On a job that is not paused: IllegalTransition."""
-        await self._ask(lambda: self._resume(job_id))
+        await self._inbox.ask(lambda: self._resume(job_id))
 
     async def delete(self, job_id: str) -> None:
         """Remove a job with all of its files, cancelling it first if it is unfinished."""
-        await self._ask(lambda: self._delete(job_id))
+        await self._inbox.ask(lambda: self._delete(job_id))
 
     async def tile_image(self, job_id: str, column: int, row: int) -> Path:
         """Have one tile written as an image of its own; the caller removes the file.
 
         Raises NotYetThere, TileOutsideFrame or EngineTrouble."""
         for attempt in (1, 2):
-            lease = await self._tile_lease(job_id, column, row)
+            fence = self._dispatcher.new_fence()
+            lease = await tile_lease(self._ledger, self._blobs, job_id, (column, row), fence)
             try:
-                await asyncio.wait_for(self._dispatcher.errand(lease, self._wake), TILE_IMAGE_TIMEOUT_S)
+                await asyncio.wait_for(self._dispatcher.errand(lease, self._inbox.wake), TILE_IMAGE_TIMEOUT_S)
                 return lease.exr_out
             except TimeoutError:
                 raise EngineTrouble(
@@ -161,21 +157,7 @@ class Orchestrator:
 
     def progress(self, record: JobRecord) -> Progress:
         """How far a job is, including samples that no committed tile contains yet."""
-        run = self._runs.get(record.id)
-        if record.grid is None or record.facts is None:
-            return Progress(0, 0, 0, 0, None, None)
-        goal = settled(record.request.goal, record.facts.scene_spp)
-        samples = record.samples_done + (0 if run is None else run.samples_in_flight())
-        running_s = record.running_s if run is None else run.running_s(time.monotonic())
-        error = None if record.newest is None else record.newest.error_noise
-        ceiling = ceiling_spp(goal, record.request.limits)
-        passes = record.passes_opened
-        if goal.spp is not None and record.state not in TERMINAL_STATES:
-            passes = max(passes, pass_count(ceiling or goal.spp))
-        eta = None
-        if record.state in (JobState.RUNNING, JobState.FINALIZING):
-            eta = eta_seconds(goal, samples / record.grid.crop.area, running_s, error, ceiling)
-        return Progress(record.tiles_done, record.grid.count * passes, samples, record.passes_opened, error, eta)
+        return progress_of(record, self._runs.get(record.id), time.monotonic())
 
     def running_s(self, record: JobRecord) -> float:
         """Seconds that a job has spent in RUNNING, up to now."""
@@ -183,29 +165,6 @@ class Orchestrator:
         return record.running_s if run is None else run.running_s(time.monotonic())
 
     # ---- the inbox ----
-
-    async def _ask(self, work: Callable[[], Awaitable[T]]) -> T:
-        """Have `work` done by the inbox's task and wait for its result."""
-        answer: asyncio.Future[T] = asyncio.get_running_loop().create_future()
-
-        async def asked() -> None:
-            try:
-                result = await work()
-            except Exception as error:
-                if not answer.done():
-                    answer.set_exception(error)
-            else:
-                if not answer.done():
-                    answer.set_result(result)
-
-        self._inbox.put_nowait(asked)
-        return await answer
-
-    def _wake(self) -> None:
-        async def nothing() -> None:
-            return None
-
-        self._inbox.put_nowait(nothing)
 
     def _background(self, work: Awaitable[None]) -> None:
         task = asyncio.ensure_future(work)
@@ -215,11 +174,11 @@ class Orchestrator:
     async def _handle_inbox(self) -> None:
         handled = 0
         while True:
-            work = await self._inbox.get()
+            work = await self._inbox.next()
             handled += 1
             try:
                 await work()
-                if self._inbox.empty() or handled % MESSAGES_PER_DISPATCH == 0:
+                if self._inbox.empty or handled % MESSAGES_PER_DISPATCH == 0:
                     await self._dispatch()
             except StaleLease as error:
                 log.info("stale work dropped", extra={"reason": str(error)})
@@ -229,12 +188,12 @@ class Orchestrator:
     async def _hear_outcomes(self) -> None:
         async for outcome in self._pool.outcomes():
             if outcome is None:
-                self._wake()
+                self._inbox.wake()
             else:
-                self._inbox.put_nowait(lambda outcome=outcome: self._on_outcome(outcome))  # type: ignore[misc]
+                self._inbox.put(lambda outcome=outcome: self._on_outcome(outcome))  # type: ignore[misc]
 
     def _report_batch(self, batch: Batch) -> None:
-        self._inbox.put_nowait(lambda: self._on_batch(batch))
+        self._inbox.put(lambda: self._on_batch(batch))
 
     async def _dispatch(self) -> None:
         """Fill the engine processes' windows, then see which jobs have come to their end."""
@@ -293,33 +252,6 @@ class Orchestrator:
         self._runs.pop(job_id, None)
         self._pool.cancel(job_id)
         self.watch.notify(job_id)
-
-    async def _tile_lease(self, job_id: str, column: int, row: int) -> WriteTileLease:
-        record = await self._ledger.job(job_id)
-        if record.grid is None or record.facts is None:
-            raise NotYetThere(
-                f"job {job_id}: state {record.state}, its tiles are not known before the scene is prepared"
-            )
-        tile = record.grid.index(column, row)
-        if tile is None:
-            raise TileOutsideFrame(
-                f"tile {column}-{row}: expected a column below {record.grid.columns} and a row below {record.grid.rows}"
-            )
-        stored = sorted((t.pass_index, t.sha256) for t in (await self._ledger.unmerged(job_id)).tiles if t.tile == tile)
-        film = None if record.newest is None else record.newest.film
-        if film is None and not stored:
-            raise NotYetThere(f"tile {column}-{row} of job {job_id}: not rendered yet")
-        return WriteTileLease(
-            fence=self._dispatcher.new_fence(),
-            job_id=job_id,
-            width=record.facts.width,
-            height=record.facts.height,
-            rect=record.grid.rect(tile),
-            film_in=None if film is None else self._blobs.output(job_id, film),
-            tiles=tuple(self._blobs.tile(job_id, sha256) for _, sha256 in stored),
-            exr_out=self._blobs.scratch(job_id, f"{uuid.uuid4().hex}.exr"),
-            info=ImageInfo(job_id, record.request.bundle.digest(), record.facts.integrator, record.request.seed),
-        )
 
     # ---- outcomes ----
 
@@ -424,9 +356,9 @@ class Orchestrator:
             log.info("stale revision dropped", extra={"reason": str(error)})
         except OSError as error:
             failed = LeaseFailed(merged.lease, FailureKind.RESOURCE, f"the revision could not be stored: {error}")
-            self._inbox.put_nowait(lambda: self._on_outcome(failed))
+            self._inbox.put(lambda: self._on_outcome(failed))
         else:
-            self._inbox.put_nowait(lambda: self._on_published(run, revision))
+            self._inbox.put(lambda: self._on_published(run, revision))
 
     async def _on_published(self, run: JobRun, revision: Revision) -> None:
         run.publish(revision)

@@ -4,8 +4,10 @@ import asyncio
 import time
 from pathlib import Path
 
+from fluxfarm.domain.leases import Merged
+from fluxfarm.domain.records import Revision
 from fluxfarm.errors import StaleLease
-from fluxfarm.ports import BlobStore, Ledger, Merged, Revision
+from fluxfarm.ports import BlobStore, Ledger
 
 
 async def publish(

@@ -9,9 +9,10 @@ from dataclasses import dataclass, field
 
 from fluxfarm.domain.goal import Measured, Stop, has_barriers, next_pass, settled
 from fluxfarm.domain.job import JobState
+from fluxfarm.domain.leases import RenderLease, SceneRef
+from fluxfarm.domain.records import JobRecord, Revision, SceneFacts, Unmerged
 from fluxfarm.domain.schedule import SampleRange
 from fluxfarm.domain.tiles import TileGrid
-from fluxfarm.ports import JobRecord, RenderLease, Revision, SceneFacts, SceneRef, Unmerged
 
 # Passes that may be under way before the oldest of them is merged.
 MOST_OPEN_PASSES = 4

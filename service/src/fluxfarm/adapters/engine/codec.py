@@ -6,8 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from fluxfarm.adapters.protocol import engine_pb2 as pb
-from fluxfarm.domain.tiles import PixelRect
-from fluxfarm.ports import (
+from fluxfarm.domain.leases import (
     FailureKind,
     ImageInfo,
     Lease,
@@ -19,13 +18,14 @@ from fluxfarm.ports import (
     PrepareLease,
     RenderLease,
     SamplesTaken,
-    SceneFacts,
     SceneRef,
     TileRendered,
     TilesFinished,
     TileWritten,
     WriteTileLease,
 )
+from fluxfarm.domain.records import SceneFacts
+from fluxfarm.domain.tiles import PixelRect
 
 PROTOCOL_VERSION = 1
 MAX_FRAME_BYTES = 64 << 20

@@ -7,7 +7,8 @@ from collections.abc import AsyncIterator
 from pathlib import Path
 
 from fluxfarm.adapters.engine.process import EngineProcess
-from fluxfarm.ports import Lease, LeaseLost, Outcome, WorkerInfo
+from fluxfarm.domain.leases import Lease, LeaseLost, Outcome
+from fluxfarm.ports import WorkerInfo
 
 log = logging.getLogger(__name__)
 

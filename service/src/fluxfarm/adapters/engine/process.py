@@ -14,7 +14,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 from fluxfarm.adapters.engine import codec
-from fluxfarm.ports import Lease, LeaseLost, Outcome, PrepareLease, RenderLease
+from fluxfarm.domain.leases import Lease, LeaseLost, Outcome, PrepareLease, RenderLease
 
 log = logging.getLogger(__name__)
 

@@ -25,10 +25,10 @@ from fluxfarm.adapters.ledger.schema import (
 )
 from fluxfarm.domain.events import EventKind
 from fluxfarm.domain.job import TERMINAL_STATES, JobState, check_transition
+from fluxfarm.domain.records import JobRequest, Revision, SceneFacts, TileCommit
 from fluxfarm.domain.schedule import SampleRange
 from fluxfarm.domain.tiles import TileGrid
 from fluxfarm.errors import Gone, IdempotencyConflict, IllegalTransition, JobNotFound, StaleLease
-from fluxfarm.ports import JobRequest, Revision, SceneFacts, TileCommit
 
 WORKING_STATES = frozenset({JobState.PREPARING, JobState.RUNNING, JobState.FINALIZING})
 

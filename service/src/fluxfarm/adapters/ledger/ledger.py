@@ -12,17 +12,9 @@ from fluxfarm.adapters.ledger.database import Database
 from fluxfarm.adapters.ledger.schema import events, jobs, passes, revisions, tiles
 from fluxfarm.domain.events import Event
 from fluxfarm.domain.job import JobState
+from fluxfarm.domain.records import JobRecord, JobRequest, Revision, SceneFacts, StoredTile, TileCommit, Unmerged
 from fluxfarm.domain.schedule import SampleRange
 from fluxfarm.domain.tiles import TileGrid
-from fluxfarm.ports import (
-    JobRecord,
-    JobRequest,
-    Revision,
-    SceneFacts,
-    StoredTile,
-    TileCommit,
-    Unmerged,
-)
 
 T = TypeVar("T")
 

@@ -9,9 +9,9 @@ from sqlalchemy import Row
 from fluxfarm.domain.events import Event, EventKind
 from fluxfarm.domain.goal import Goal, Limits
 from fluxfarm.domain.job import JobState
+from fluxfarm.domain.records import JobRecord, JobRequest, Revision, SceneFacts
 from fluxfarm.domain.scene import SceneBundle
 from fluxfarm.domain.tiles import PixelRect, TileGrid
-from fluxfarm.ports import JobRecord, JobRequest, Revision, SceneFacts
 
 
 def to_json(value: object) -> str:

@@ -1,0 +1,174 @@
+"""Work for engine processes, complete in itself, and what comes back from it."""
+
+from dataclasses import dataclass
+from enum import StrEnum
+from pathlib import Path
+
+from fluxfarm.domain.records import SceneFacts
+from fluxfarm.domain.schedule import SampleRange
+from fluxfarm.domain.tiles import PixelRect
+
+
+@dataclass(frozen=True, slots=True)
+class SceneRef:
+    """A scene for an engine process. `key` differs whenever anything below differs; zeros and "": as the scene says."""
+
+    key: str
+    folder: Path
+    entry: str
+    width: int
+    height: int
+    integrator: str
+
+
+@dataclass(frozen=True, slots=True)
+class ImageInfo:
+    """Goes into the header of an image."""
+
+    job_id: str
+    scene_digest: str
+    integrator: str
+    seed: int
+
+
+@dataclass(frozen=True, slots=True)
+class Lease:
+    """Work for one engine process, complete in itself. `fence` is unique and rises; a revoked fence commits nothing."""
+
+    fence: int
+    job_id: str
+
+
+@dataclass(frozen=True, slots=True)
+class PrepareLease(Lease):
+    """Read and compile the scene."""
+
+    scene: SceneRef
+
+
+@dataclass(frozen=True, slots=True)
+class RenderLease(Lease):
+    """Take `samples` of every pixel of `rects`; `tiles` are the grid's indices of the same tiles."""
+
+    scene: SceneRef
+    width: int
+    height: int
+    integrator: str
+    seed: int
+    pass_index: int
+    samples: SampleRange
+    tiles: tuple[int, ...]
+    rects: tuple[PixelRect, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class MergeLease(Lease):
+    """Add finished tiles to the film and write the film, the image and its preview."""
+
+    width: int
+    height: int
+    crop: PixelRect
+    film_in: Path | None
+    tiles: tuple[Path, ...]
+    film_out: Path
+    exr_out: Path
+    png_out: Path
+    info: ImageInfo
+    passes: int
+
+
+@dataclass(frozen=True, slots=True)
+class WriteTileLease(Lease):
+    """Write one rect of the film, with tiles that are not in it yet, as an image of its own."""
+
+    width: int
+    height: int
+    rect: PixelRect
+    film_in: Path | None
+    tiles: tuple[Path, ...]
+    exr_out: Path
+    info: ImageInfo
+
+
+class FailureKind(StrEnum):
+    """Why an engine process refused: only RESOURCE is worth another try elsewhere or later."""
+
+    SCENE = "SCENE"
+    RESOURCE = "RESOURCE"
+    INTERNAL = "INTERNAL"
+    CANCELLED = "CANCELLED"
+
+
+@dataclass(frozen=True, slots=True)
+class Prepared:
+    """The scene is compiled."""
+
+    lease: PrepareLease
+    facts: SceneFacts
+
+
+@dataclass(frozen=True, slots=True)
+class SamplesTaken:
+    """`samples` camera samples of the lease are finished so far."""
+
+    lease: RenderLease
+    samples: int
+
+
+@dataclass(frozen=True, slots=True)
+class TileRendered:
+    """The tile at `position` of the lease. `seconds` on one thread."""
+
+    lease: RenderLease
+    position: int
+    sums: bytes
+    seconds: float
+    rays: int
+    non_finite_samples: int
+
+
+@dataclass(frozen=True, slots=True)
+class TilesFinished:
+    """Every tile of the lease was reported."""
+
+    lease: RenderLease
+
+
+@dataclass(frozen=True, slots=True)
+class Merged:
+    """The files of the lease are written and closed, but not yet synced."""
+
+    lease: MergeLease
+    min_samples: int
+    max_samples: int
+    error_noise: float | None
+    mean: tuple[float, float, float]
+    non_finite_samples: int
+
+
+@dataclass(frozen=True, slots=True)
+class TileWritten:
+    """The image of the tile is written."""
+
+    lease: WriteTileLease
+
+
+@dataclass(frozen=True, slots=True)
+class LeaseFailed:
+    """The engine process refused the lease and lives on."""
+
+    lease: Lease
+    kind: FailureKind
+    message: str
+
+
+@dataclass(frozen=True, slots=True)
+class LeaseLost:
+    """The engine process died or was stopped; `blamed` if it was working on this lease when it died."""
+
+    lease: Lease
+    reason: str
+    blamed: bool
+
+
+Outcome = Prepared | SamplesTaken | TileRendered | TilesFinished | Merged | TileWritten | LeaseFailed | LeaseLost

@@ -1,0 +1,118 @@
+"""Jobs and what belongs to them, as the ledger keeps them."""
+
+from dataclasses import dataclass
+from typing import Any
+
+from fluxfarm.domain.goal import Goal, Limits
+from fluxfarm.domain.job import JobState
+from fluxfarm.domain.scene import SceneBundle
+from fluxfarm.domain.schedule import SampleRange
+from fluxfarm.domain.tiles import PixelRect, TileGrid
+
+
+@dataclass(frozen=True, slots=True)
+class JobRequest:
+    """A checked request: what the owner asked for. `size` (width, height) and `crop` are in pixels."""
+
+    name: str
+    bundle: SceneBundle
+    builtin: str | None
+    size: tuple[int, int] | None
+    crop: PixelRect | None
+    integrator: str | None
+    goal: Goal
+    limits: Limits
+    priority: int
+    seed: int
+
+
+@dataclass(frozen=True, slots=True)
+class SceneFacts:
+    """What the engine found in the scene. `scene_spp` is 0 when the file does not say."""
+
+    width: int
+    height: int
+    crop: PixelRect
+    scene_spp: int
+    integrator: str
+    warnings: tuple[str, ...]
+    plan: dict[str, Any]
+    seconds: float
+
+
+@dataclass(frozen=True, slots=True)
+class Revision:
+    """A published image. Digests name files of the job; `film` is gone once a newer revision is recorded."""
+
+    number: int
+    passes: int
+    min_samples: int
+    max_samples: int
+    error_noise: float | None
+    mean: tuple[float, float, float]
+    non_finite_samples: int
+    running_s: float
+    exr: str
+    exr_bytes: int
+    png: str
+    film: str | None
+    at: float
+
+
+@dataclass(frozen=True, slots=True)
+class JobRecord:
+    """A job as the ledger knows it. `facts` and `grid` are None before the scene was prepared."""
+
+    id: str
+    state: JobState
+    reason: str | None
+    request: JobRequest
+    created_at: float
+    facts: SceneFacts | None
+    grid: TileGrid | None
+    warnings: tuple[str, ...]
+    tiles_done: int
+    samples_done: int
+    rays: int
+    non_finite_samples: int
+    passes_opened: int
+    running_s: float
+    crashes: int
+    resource_failures: int
+    newest: Revision | None
+
+
+@dataclass(frozen=True, slots=True)
+class StoredTile:
+    """A committed tile of a pass that no film contains yet."""
+
+    pass_index: int
+    tile: int
+    sha256: str
+
+
+@dataclass(frozen=True, slots=True)
+class Unmerged:
+    """What a restart needs of a job: samples per pixel in the newest revision, passes opened after it, their tiles."""
+
+    merged_spp: int
+    passes: tuple[tuple[int, SampleRange], ...]
+    tiles: tuple[StoredTile, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class TileCommit:
+    """A stored tile that asks to be counted."""
+
+    fence: int
+    job_id: str
+    pass_index: int
+    tile: int
+    column: int
+    row: int
+    rect: PixelRect
+    samples: int
+    sha256: str
+    seconds: float
+    rays: int
+    non_finite_samples: int
