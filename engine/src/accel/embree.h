@@ -21,6 +21,27 @@ inline void embree_intersect(RTCScene scene, RTCRayHit& ray_hit) {
 #endif
 }
 
+// Sixteen rays at once; lanes with valid[i] == 0 are left alone, the others have valid[i] == -1.
+inline void embree_intersect(RTCScene scene, const int* valid, RTCRayHit16& ray_hits) {
+#if FLUXFARM_EMBREE_MAJOR == 4
+  rtcIntersect16(valid, scene, &ray_hits);
+#else
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  rtcIntersect16(valid, scene, &context, &ray_hits);
+#endif
+}
+
+inline void embree_occluded(RTCScene scene, const int* valid, RTCRay16& rays) {
+#if FLUXFARM_EMBREE_MAJOR == 4
+  rtcOccluded16(valid, scene, &rays);
+#else
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  rtcOccluded16(valid, scene, &context, &rays);
+#endif
+}
+
 inline void embree_occluded(RTCScene scene, RTCRay& ray) {
 #if FLUXFARM_EMBREE_MAJOR == 4
   rtcOccluded1(scene, &ray);

@@ -2,9 +2,8 @@
 #include "accel/quadric_geometry.h"
 
 #include <cmath>
+#include <limits>
 #include <utility>
-
-#include "support/check.h"
 
 namespace fluxfarm {
 namespace {
@@ -51,31 +50,37 @@ void bound(const RTCBoundsFunctionArguments* arguments) {
 }
 
 template <typename Quadric>
-float hit_distance(const void* quadric, const RTCRay& ray) {
-  return hit_distance(*static_cast<const Quadric*>(quadric), {ray.org_x, ray.org_y, ray.org_z}, {ray.dir_x, ray.dir_y, ray.dir_z},
-                      {ray.tnear, ray.tfar});
+float hit_distance(const void* quadric, RTCRayN* rays, unsigned n, unsigned i) {
+  return hit_distance(*static_cast<const Quadric*>(quadric), {RTCRayN_org_x(rays, n, i), RTCRayN_org_y(rays, n, i), RTCRayN_org_z(rays, n, i)},
+                      {RTCRayN_dir_x(rays, n, i), RTCRayN_dir_y(rays, n, i), RTCRayN_dir_z(rays, n, i)},
+                      {RTCRayN_tnear(rays, n, i), RTCRayN_tfar(rays, n, i)});
 }
 
 template <typename Quadric>
 void intersect(const RTCIntersectFunctionNArguments* arguments) {
-  FLUXFARM_CHECK(arguments->N == 1, "only single rays are traced");
-  if (arguments->valid[0] == 0) return;
-  auto& query = *reinterpret_cast<RTCRayHit*>(arguments->rayhit);
-  const float t = hit_distance<Quadric>(arguments->geometryUserPtr, query.ray);
-  if (t < 0) return;
-  query.ray.tfar = t;
-  query.hit.u = query.hit.v = 0;
-  query.hit.primID = arguments->primID;
-  query.hit.geomID = arguments->geomID;
-  query.hit.instID[0] = arguments->context->instID[0];
+  const unsigned n = arguments->N;
+  RTCRayN* rays = RTCRayHitN_RayN(arguments->rayhit, n);
+  RTCHitN* hits = RTCRayHitN_HitN(arguments->rayhit, n);
+  for (unsigned i = 0; i < n; ++i) {
+    if (arguments->valid[i] == 0) continue;
+    const float t = hit_distance<Quadric>(arguments->geometryUserPtr, rays, n, i);
+    if (t < 0) continue;
+    RTCRayN_tfar(rays, n, i) = t;
+    RTCHitN_u(hits, n, i) = RTCHitN_v(hits, n, i) = 0;
+    RTCHitN_primID(hits, n, i) = arguments->primID;
+    RTCHitN_geomID(hits, n, i) = arguments->geomID;
+    RTCHitN_instID(hits, n, i, 0) = arguments->context->instID[0];
+  }
 }
 
 template <typename Quadric>
 void occlude(const RTCOccludedFunctionNArguments* arguments) {
-  FLUXFARM_CHECK(arguments->N == 1, "only single rays are traced");
-  if (arguments->valid[0] == 0) return;
-  auto& ray = *reinterpret_cast<RTCRay*>(arguments->ray);
-  if (hit_distance<Quadric>(arguments->geometryUserPtr, ray) >= 0) ray.tfar = -std::numeric_limits<float>::infinity();
+  const unsigned n = arguments->N;
+  RTCRayN* rays = arguments->ray;
+  for (unsigned i = 0; i < n; ++i) {
+    if (arguments->valid[i] == 0 || hit_distance<Quadric>(arguments->geometryUserPtr, rays, n, i) < 0) continue;
+    RTCRayN_tfar(rays, n, i) = -std::numeric_limits<float>::infinity();
+  }
 }
 
 template <typename Quadric>

@@ -1,6 +1,8 @@
 #include "accel/ray_accelerator.h"
 
+#include <algorithm>
 #include <array>
+#include <limits>
 #include <vector>
 
 #if defined(__SSE2__)
@@ -113,6 +115,70 @@ bool RayAccelerator::occluded(const Ray& ray) const {
                   0,            ray.t_max,    0xffffffffu,  0,         0};
   embree_occluded(impl_->scene, query);
   return query.tfar < 0;
+}
+
+namespace {
+
+constexpr std::size_t kPacket = 16;
+// Fewer rays than this are traced one by one: an almost empty packet costs more.
+constexpr std::size_t kMinPacket = 4;
+
+// Fills lanes 0 .. rays.size() - 1 and marks them in `valid`. The others get an empty interval, too: on machines without 16-wide
+// vectors Embree traces the packet as a stream, which does not look at `valid`.
+template <typename Packet>
+void fill(std::span<const Ray> rays, int* valid, Packet& packet) {
+  for (std::size_t i = 0; i < kPacket; ++i) {
+    const bool used = i < rays.size();
+    valid[i] = used ? -1 : 0;
+    const Ray& ray = rays[used ? i : 0];
+    packet.org_x[i] = ray.origin.x;
+    packet.org_y[i] = ray.origin.y;
+    packet.org_z[i] = ray.origin.z;
+    packet.dir_x[i] = ray.direction.x;
+    packet.dir_y[i] = ray.direction.y;
+    packet.dir_z[i] = ray.direction.z;
+    packet.tnear[i] = ray.t_min;
+    packet.tfar[i] = used ? ray.t_max : -std::numeric_limits<float>::infinity();
+    packet.time[i] = 0;
+    packet.mask[i] = 0xffffffffu;
+    packet.id[i] = 0;
+    packet.flags[i] = 0;
+  }
+}
+
+}  // namespace
+
+void RayAccelerator::intersect(std::span<const Ray> rays, std::span<Hit> hits) const {
+  while (rays.size() >= kMinPacket) {
+    const std::size_t count = std::min(rays.size(), kPacket);
+    alignas(64) int valid[kPacket];
+    RTCRayHit16 packet;
+    fill(rays.first(count), valid, packet.ray);
+    for (std::size_t i = 0; i < kPacket; ++i) packet.hit.geomID[i] = packet.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
+    embree_intersect(impl_->scene, valid, packet);
+    for (std::size_t i = 0; i < count; ++i) {
+      hits[i] = {packet.ray.tfar[i], packet.hit.geomID[i], packet.hit.primID[i], packet.hit.u[i], packet.hit.v[i]};
+    }
+    rays = rays.subspan(count);
+    hits = hits.subspan(count);
+  }
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    if (!intersect(rays[i], hits[i])) hits[i].shape = Hit::kNone;
+  }
+}
+
+void RayAccelerator::occluded(std::span<const Ray> rays, std::span<bool> occluded_out) const {
+  while (rays.size() >= kMinPacket) {
+    const std::size_t count = std::min(rays.size(), kPacket);
+    alignas(64) int valid[kPacket];
+    RTCRay16 packet;
+    fill(rays.first(count), valid, packet);
+    embree_occluded(impl_->scene, valid, packet);
+    for (std::size_t i = 0; i < count; ++i) occluded_out[i] = packet.tfar[i] < 0;
+    rays = rays.subspan(count);
+    occluded_out = occluded_out.subspan(count);
+  }
+  for (std::size_t i = 0; i < rays.size(); ++i) occluded_out[i] = occluded(rays[i]);
 }
 
 std::uint64_t RayAccelerator::replay(std::span<const RecordedRay> rays) const {

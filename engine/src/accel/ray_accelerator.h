@@ -47,7 +47,14 @@ class RayAccelerator {
   // Call once, after the last add. Throws ResourceError when memory runs out.
   void build();
 
-  // Nearest hit in (t_min, t_max); false if there is none.
+  // For each ray the nearest hit in (t_min, t_max); Hit::shape is Hit::kNone where there is none. Rays are traced in packets of
+  // sixteen in the order given: the last bits of a hit may depend on which rays share its packet, so callers that promise the same
+  // bits must group rays the same way each time.
+  void intersect(std::span<const Ray> rays, std::span<Hit> hits) const;
+  // For each ray whether anything lies in (t_min, t_max).
+  void occluded(std::span<const Ray> rays, std::span<bool> occluded) const;
+
+  // One ray. Nearest hit in (t_min, t_max); false if there is none.
   bool intersect(const Ray& ray, Hit& hit) const;
   // Whether anything lies in (t_min, t_max).
   bool occluded(const Ray& ray) const;

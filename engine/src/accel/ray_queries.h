@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "accel/ray_accelerator.h"
@@ -12,21 +13,26 @@ class RayQueries {
  public:
   explicit RayQueries(const RayAccelerator& accelerator) : accelerator_(accelerator) {}
 
-  bool intersect(const Ray& ray, Hit& hit) {
-    ++rays_;
-    if (recording_ != nullptr) [[unlikely]] recording_->push_back({ray, false});
-    return accelerator_.intersect(ray, hit);
+  // As the accelerator's functions of the same names.
+  void intersect(std::span<const Ray> rays, std::span<Hit> hits) {
+    count(rays, false);
+    accelerator_.intersect(rays, hits);
   }
-  bool occluded(const Ray& ray) {
-    ++rays_;
-    if (recording_ != nullptr) [[unlikely]] recording_->push_back({ray, true});
-    return accelerator_.occluded(ray);
+  void occluded(std::span<const Ray> rays, std::span<bool> occluded_out) {
+    count(rays, true);
+    accelerator_.occluded(rays, occluded_out);
   }
 
   void record_to(std::vector<RecordedRay>* rays) { recording_ = rays; }
   std::uint64_t rays() const { return rays_; }
 
  private:
+  void count(std::span<const Ray> rays, bool occlusion) {
+    rays_ += rays.size();
+    if (recording_ == nullptr) [[likely]] return;
+    for (const Ray& ray : rays) recording_->push_back({ray, occlusion});
+  }
+
   const RayAccelerator& accelerator_;
   std::uint64_t rays_ = 0;
   std::vector<RecordedRay>* recording_ = nullptr;

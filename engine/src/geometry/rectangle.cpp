@@ -24,8 +24,9 @@ Rectangle::Rectangle(Vec3f corner, Vec3f edge_u, Vec3f edge_v, bool flipped)
 
 SurfacePoint Rectangle::surface_point(const Ray&, const Hit& hit) const {
   // Two triangles: corners 0 1 2 and 0 2 3.
-  const float a = hit.primitive == 0 ? hit.u + hit.v : hit.u;
-  const float b = hit.primitive == 0 ? hit.v : hit.u + hit.v;
+  const auto second = static_cast<float>(hit.primitive);
+  const float a = hit.u + (1 - second) * hit.v;
+  const float b = hit.v + second * hit.u;
   return {corner_ + a * edge_u_ + b * edge_v_, normal_, normal_};
 }
 

@@ -9,6 +9,8 @@ namespace fluxfarm {
 
 // What the ray accelerator answers.
 struct Hit {
+  static constexpr std::uint32_t kNone = 0xffffffffu;
+
   float t = 0;
   std::uint32_t shape = 0;      // index of the shape in the scene
   std::uint32_t primitive = 0;  // triangle of the mesh; 0 for other shapes

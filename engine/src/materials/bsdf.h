@@ -31,21 +31,23 @@ class Bsdf {
   virtual ~Bsdf() = default;
 
   // f(wo, wi) and the density with which sample() would choose wi.
-  virtual BsdfValue value(Vec3f wo, Vec3f wi) const = 0;
+  virtual BsdfValue value(const Vec3f& wo, const Vec3f& wi) const = 0;
 
   // Chooses wi. Empty: no light is scattered to wo in this sample (absorbed, or wo is on a side that does not scatter).
   // `u_lobe` in [0,1) picks the lobe, `u` in [0,1)^2 the direction.
-  virtual std::optional<BsdfSample> sample(Vec3f wo, float u_lobe, Vec2f u) const = 0;
+  virtual std::optional<BsdfSample> sample(const Vec3f& wo, float u_lobe, Vec2f u) const = 0;
 
   // Directional-hemispherical reflectance (plus transmittance) for the albedo layer: exact or a documented approximation.
-  virtual Rgb albedo(Vec3f wo) const = 0;
+  virtual Rgb albedo(const Vec3f& wo) const = 0;
 
   // False if every lobe is a delta: value() is zero everywhere.
   virtual bool has_continuous_lobe() const = 0;
+  // Whether sample() looks at u_lobe.
+  virtual bool chooses_lobe() const { return true; }
   // True if light can pass to the other side.
   virtual bool transmits() const { return false; }
 
-  float pdf(Vec3f wo, Vec3f wi) const { return value(wo, wi).pdf; }
+  float pdf(const Vec3f& wo, const Vec3f& wi) const { return value(wo, wi).pdf; }
 };
 
 }  // namespace fluxfarm

@@ -10,14 +10,14 @@ class Conductor final : public Bsdf {
  public:
   explicit Conductor(const ConductorDescription& d) : reflectance_(d) {}
 
-  BsdfValue value(Vec3f, Vec3f) const override { return {}; }
+  BsdfValue value(const Vec3f&, const Vec3f&) const override { return {}; }
 
-  std::optional<BsdfSample> sample(Vec3f wo, float, Vec2f) const override {
+  std::optional<BsdfSample> sample(const Vec3f& wo, float, Vec2f) const override {
     if (wo.z <= 0) return std::nullopt;
     return BsdfSample{.wi = reflect(wo), .weight = reflectance_(wo.z), .delta = true};
   }
 
-  Rgb albedo(Vec3f wo) const override { return wo.z > 0 ? reflectance_(wo.z) : Rgb{}; }
+  Rgb albedo(const Vec3f& wo) const override { return wo.z > 0 ? reflectance_(wo.z) : Rgb{}; }
   bool has_continuous_lobe() const override { return false; }
 
  private:

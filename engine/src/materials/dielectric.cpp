@@ -12,9 +12,9 @@ class Dielectric final : public Bsdf {
   explicit Dielectric(const DielectricDescription& d)
       : eta_(d.eta), reflectance_(d.specular_reflectance), transmittance_(d.specular_transmittance) {}
 
-  BsdfValue value(Vec3f, Vec3f) const override { return {}; }
+  BsdfValue value(const Vec3f&, const Vec3f&) const override { return {}; }
 
-  std::optional<BsdfSample> sample(Vec3f wo, float u_lobe, Vec2f) const override {
+  std::optional<BsdfSample> sample(const Vec3f& wo, float u_lobe, Vec2f) const override {
     if (wo.z == 0) return std::nullopt;
     const DielectricFresnel fresnel = fresnel_dielectric(wo.z, eta_);
     if (u_lobe < fresnel.reflectance) return BsdfSample{.wi = reflect(wo), .weight = reflectance_, .delta = true};
@@ -26,7 +26,7 @@ class Dielectric final : public Bsdf {
   }
 
   // Of flux: without the scaling of radiance.
-  Rgb albedo(Vec3f wo) const override {
+  Rgb albedo(const Vec3f& wo) const override {
     const float f = fresnel_dielectric(wo.z, eta_).reflectance;
     return reflectance_ * f + transmittance_ * (1 - f);
   }

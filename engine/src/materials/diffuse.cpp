@@ -9,20 +9,21 @@ class Diffuse final : public Bsdf {
  public:
   explicit Diffuse(Rgb reflectance) : reflectance_(reflectance), f_(reflectance * kInvPi) {}
 
-  BsdfValue value(Vec3f wo, Vec3f wi) const override {
+  BsdfValue value(const Vec3f& wo, const Vec3f& wi) const override {
     if (wo.z <= 0 || wi.z <= 0) return {};
     return {f_, wi.z * kInvPi};
   }
 
-  std::optional<BsdfSample> sample(Vec3f wo, float, Vec2f u) const override {
+  std::optional<BsdfSample> sample(const Vec3f& wo, float, Vec2f u) const override {
     if (wo.z <= 0) return std::nullopt;
     const Vec3f wi = square_to_cosine_hemisphere(u);
     if (wi.z <= 0) return std::nullopt;
     return BsdfSample{.wi = wi, .weight = reflectance_, .pdf = wi.z * kInvPi};
   }
 
-  Rgb albedo(Vec3f wo) const override { return wo.z > 0 ? reflectance_ : Rgb{}; }
+  Rgb albedo(const Vec3f& wo) const override { return wo.z > 0 ? reflectance_ : Rgb{}; }
   bool has_continuous_lobe() const override { return true; }
+  bool chooses_lobe() const override { return false; }
 
  private:
   Rgb reflectance_, f_;

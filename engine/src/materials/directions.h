@@ -21,7 +21,7 @@ inline Vec3f refract(Vec3f wo, Vec3f m, float cos_m, float cos_t, float eta) {
 
 // The microfacet normal, on the side of +z, that takes wo to wi by reflection (eta = 1) or refraction (eta: index on the side of wi
 // over that of wo). Empty if wo and wi cancel or the normal is in the macroscopic plane.
-inline std::optional<Vec3f> half_vector(Vec3f wo, Vec3f wi, float eta) {
+inline std::optional<Vec3f> half_vector(const Vec3f& wo, const Vec3f& wi, float eta) {
   const Vec3f h = wo + wi * eta;
   const float length2 = length_squared(h);
   if (!(length2 > 1e-18f) || h.z == 0) return std::nullopt;

@@ -21,14 +21,14 @@ class Plastic final : public Bsdf {
         lobes_(d),
         mean_transmittance_(1 - fresnel_diffuse_reflectance(d.eta)) {}
 
-  BsdfValue value(Vec3f wo, Vec3f wi) const override {
+  BsdfValue value(const Vec3f& wo, const Vec3f& wi) const override {
     if (wo.z <= 0 || wi.z <= 0) return {};
     const float f_o = fresnel_dielectric(wo.z, eta_).reflectance;
     const float f_i = fresnel_dielectric(wi.z, eta_).reflectance;
     return {base_f_ * ((1 - f_o) * (1 - f_i)), (1 - lobes_.specular(f_o)) * (wi.z * kInvPi)};
   }
 
-  std::optional<BsdfSample> sample(Vec3f wo, float u_lobe, Vec2f u) const override {
+  std::optional<BsdfSample> sample(const Vec3f& wo, float u_lobe, Vec2f u) const override {
     if (wo.z <= 0) return std::nullopt;
     const float f_o = fresnel_dielectric(wo.z, eta_).reflectance;
     const float specular = lobes_.specular(f_o);
@@ -41,7 +41,7 @@ class Plastic final : public Bsdf {
   }
 
   // As exact as the fits of fresnel_diffuse_reflectance: 1 % for indices from 1.2 to 2.
-  Rgb albedo(Vec3f wo) const override {
+  Rgb albedo(const Vec3f& wo) const override {
     if (wo.z <= 0) return {};
     const float f = fresnel_dielectric(wo.z, eta_).reflectance;
     return specular_ * f + base_f_ * (kPi * (1 - f) * mean_transmittance_);

@@ -20,7 +20,7 @@ class RoughConductor final : public Bsdf {
   explicit RoughConductor(const RoughConductorDescription& d)
       : distribution_(d.roughness.alpha_u, d.roughness.alpha_v), reflectance_(d.conductor), albedo_(*this) {}
 
-  BsdfValue value(Vec3f wo, Vec3f wi) const override {
+  BsdfValue value(const Vec3f& wo, const Vec3f& wi) const override {
     if (wo.z <= 0 || wi.z <= 0) return {};
     const std::optional<Vec3f> m = half_vector(wo, wi, 1);
     if (!m) return {};
@@ -31,7 +31,7 @@ class RoughConductor final : public Bsdf {
     return {reflectance_(dot(wo, *m)) * f, 0.25f * d * distribution_.visible_by_cosine(wo)};
   }
 
-  std::optional<BsdfSample> sample(Vec3f wo, float, Vec2f u) const override {
+  std::optional<BsdfSample> sample(const Vec3f& wo, float, Vec2f u) const override {
     if (wo.z <= 0) return std::nullopt;
     const Vec3f m = distribution_.sample_normal(wo, u);
     const float cos_m = dot(wo, m);
@@ -44,7 +44,7 @@ class RoughConductor final : public Bsdf {
     return BsdfSample{.wi = wi, .weight = reflectance_(cos_m) * masking, .pdf = pdf};
   }
 
-  Rgb albedo(Vec3f wo) const override { return wo.z > 0 ? albedo_(wo.z) : Rgb{}; }
+  Rgb albedo(const Vec3f& wo) const override { return wo.z > 0 ? albedo_(wo.z) : Rgb{}; }
   bool has_continuous_lobe() const override { return true; }
 
  private:

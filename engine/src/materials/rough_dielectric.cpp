@@ -27,7 +27,7 @@ class RoughDielectric final : public Bsdf {
         albedo_outside_(*this, AlbedoTable::Side::kFront),
         albedo_inside_(*this, AlbedoTable::Side::kBack) {}
 
-  BsdfValue value(Vec3f wo, Vec3f wi) const override {
+  BsdfValue value(const Vec3f& wo, const Vec3f& wi) const override {
     if (wo.z == 0 || wi.z == 0) return {};
     const bool reflection = wo.z * wi.z > 0 || (wo.z > 0) == (wi.z > 0);
     const float eta = wo.z > 0 ? eta_ : 1 / eta_;
@@ -45,7 +45,7 @@ class RoughDielectric final : public Bsdf {
     return transmitted(fresnel, d, g, visible, cos_o, cos_i, eta);
   }
 
-  std::optional<BsdfSample> sample(Vec3f wo, float u_lobe, Vec2f u) const override {
+  std::optional<BsdfSample> sample(const Vec3f& wo, float u_lobe, Vec2f u) const override {
     if (wo.z == 0) return std::nullopt;
     const Vec3f m = distribution_.sample_normal(wo.z > 0 ? wo : -wo, u);
     const float cos_o = dot(wo, m);
@@ -67,7 +67,7 @@ class RoughDielectric final : public Bsdf {
         .wi = wi, .weight = transmittance_ * (masking_ratio(wo, wi, visible) / sqr(fresnel.eta)), .pdf = v.pdf, .eta = fresnel.eta};
   }
 
-  Rgb albedo(Vec3f wo) const override { return wo.z > 0 ? albedo_outside_(wo.z) : albedo_inside_(-wo.z); }
+  Rgb albedo(const Vec3f& wo) const override { return wo.z > 0 ? albedo_outside_(wo.z) : albedo_inside_(-wo.z); }
   bool has_continuous_lobe() const override { return true; }
   bool transmits() const override { return true; }
 
@@ -81,7 +81,7 @@ class RoughDielectric final : public Bsdf {
     return {transmittance_ * (jacobian * g), jacobian * visible * eta * eta};
   }
 
-  float masking_ratio(Vec3f wo, Vec3f wi, float visible) const {
+  float masking_ratio(const Vec3f& wo, const Vec3f& wi, float visible) const {
     return distribution_.masking_by_cosine(wo) * distribution_.masking_by_cosine(wi) * std::abs(wi.z) / visible;
   }
 

@@ -26,13 +26,13 @@ class RoughPlastic final : public Bsdf {
         lobes_(d.plastic),
         albedo_(*this) {}
 
-  BsdfValue value(Vec3f wo, Vec3f wi) const override {
+  BsdfValue value(const Vec3f& wo, const Vec3f& wi) const override {
     if (wo.z <= 0 || wi.z <= 0) return {};
     const float t_o = coat_.transmittance(wo.z);
     return value(wo, wi, t_o, lobes_.specular(1 - t_o));
   }
 
-  std::optional<BsdfSample> sample(Vec3f wo, float u_lobe, Vec2f u) const override {
+  std::optional<BsdfSample> sample(const Vec3f& wo, float u_lobe, Vec2f u) const override {
     if (wo.z <= 0) return std::nullopt;
     const float t_o = coat_.transmittance(wo.z);
     const float specular = lobes_.specular(1 - t_o);
@@ -49,11 +49,11 @@ class RoughPlastic final : public Bsdf {
     return BsdfSample{.wi = wi, .weight = v.f * (wi.z / v.pdf), .pdf = v.pdf};
   }
 
-  Rgb albedo(Vec3f wo) const override { return wo.z > 0 ? albedo_(wo.z) : Rgb{}; }
+  Rgb albedo(const Vec3f& wo) const override { return wo.z > 0 ? albedo_(wo.z) : Rgb{}; }
   bool has_continuous_lobe() const override { return true; }
 
  private:
-  BsdfValue value(Vec3f wo, Vec3f wi, float t_o, float specular) const {
+  BsdfValue value(const Vec3f& wo, const Vec3f& wi, float t_o, float specular) const {
     BsdfValue v{base_f_ * (t_o * coat_.transmittance(wi.z)), (1 - specular) * (wi.z * kInvPi)};
     const std::optional<Vec3f> m = half_vector(wo, wi, 1);
     if (!m) return v;

@@ -4,25 +4,29 @@
 namespace fluxfarm {
 namespace {
 
-Vec3f flipped(Vec3f w) { return {w.x, w.y, -w.z}; }
+// Multiplying by a sign costs less than a branch: which side a path meets cannot be guessed.
+float side_of(const Vec3f& wo) { return wo.z > 0 ? 1.0f : -1.0f; }
+Vec3f on_side(const Vec3f& w, float side) { return {w.x, w.y, side * w.z}; }
 
 class Twosided final : public Bsdf {
  public:
   Twosided(const Bsdf& front, const Bsdf& back) : front_(front), back_(back) {}
 
-  BsdfValue value(Vec3f wo, Vec3f wi) const override {
-    return wo.z > 0 ? front_.value(wo, wi) : back_.value(flipped(wo), flipped(wi));
+  BsdfValue value(const Vec3f& wo, const Vec3f& wi) const override {
+    const float side = side_of(wo);
+    return (wo.z > 0 ? front_ : back_).value(on_side(wo, side), on_side(wi, side));
   }
 
-  std::optional<BsdfSample> sample(Vec3f wo, float u_lobe, Vec2f u) const override {
-    if (wo.z > 0) return front_.sample(wo, u_lobe, u);
-    std::optional<BsdfSample> s = back_.sample(flipped(wo), u_lobe, u);
-    if (s) s->wi.z = -s->wi.z;
+  std::optional<BsdfSample> sample(const Vec3f& wo, float u_lobe, Vec2f u) const override {
+    const float side = side_of(wo);
+    std::optional<BsdfSample> s = (wo.z > 0 ? front_ : back_).sample(on_side(wo, side), u_lobe, u);
+    if (s) s->wi.z *= side;
     return s;
   }
 
-  Rgb albedo(Vec3f wo) const override { return wo.z > 0 ? front_.albedo(wo) : back_.albedo(flipped(wo)); }
+  Rgb albedo(const Vec3f& wo) const override { return (wo.z > 0 ? front_ : back_).albedo(on_side(wo, side_of(wo))); }
   bool has_continuous_lobe() const override { return front_.has_continuous_lobe() || back_.has_continuous_lobe(); }
+  bool chooses_lobe() const override { return front_.chooses_lobe() || back_.chooses_lobe(); }
 
  private:
   const Bsdf& front_;

@@ -22,11 +22,15 @@ struct Ray {
 // [Waechter19] C. Waechter and N. Binder, "A Fast and Robust Method for Avoiding Self-Intersection", Ray Tracing Gems, ch. 6.
 inline Vec3f offset_point(Vec3f p, Vec3f normal) {
   constexpr float kNearOrigin = 1.0f / 32, kFloatScale = 1.0f / 65536, kIntScale = 256;
+  // Both answers are computed and one is taken: a choice costs less than a branch that guesses wrong.
   const auto axis = [](float value, float n) {
-    if (std::fabs(value) < kNearOrigin) return value + kFloatScale * n;
-    const auto steps = static_cast<std::int32_t>(kIntScale * n);
     const auto bits = std::bit_cast<std::int32_t>(value);
-    return std::bit_cast<float>(bits + (value < 0 ? -steps : steps));
+    const auto steps = static_cast<std::int32_t>(kIntScale * n);
+    const std::int32_t sign = bits >> 31;  // 0 or -1
+    const std::int32_t far = bits + ((steps ^ sign) - sign);
+    const std::int32_t near = std::bit_cast<std::int32_t>(value + kFloatScale * n);
+    const std::int32_t is_near = -static_cast<std::int32_t>(std::fabs(value) < kNearOrigin);
+    return std::bit_cast<float>((near & is_near) | (far & ~is_near));
   };
   return {axis(p.x, normal.x), axis(p.y, normal.y), axis(p.z, normal.z)};
 }

@@ -15,6 +15,15 @@ constexpr std::uint64_t mix_bits(std::uint64_t v) {
   return v;
 }
 
+// A bijection of 32-bit words of the same kind: C. Wellons' "lowbias32", found by search.
+constexpr std::uint32_t mix_bits_32(std::uint32_t v) {
+  v ^= v >> 16;
+  v *= 0x21f0aaadu;
+  v ^= v >> 15;
+  v *= 0x735a2d97u;
+  return v ^ (v >> 15);
+}
+
 // Hash of a sequence of words; different lengths and orders give unrelated values.
 template <typename... Words>
 constexpr std::uint64_t hash_words(std::uint64_t first, Words... rest) {

@@ -14,7 +14,8 @@
 namespace fluxfarm {
 
 constexpr std::uint32_t reverse_bits(std::uint32_t v) {
-  v = __builtin_bswap32(v);
+  v = (v >> 16) | (v << 16);
+  v = ((v >> 8) & 0x00ff00ffu) | ((v & 0x00ff00ffu) << 8);
   v = ((v >> 4) & 0x0f0f0f0fu) | ((v & 0x0f0f0f0fu) << 4);
   v = ((v >> 2) & 0x33333333u) | ((v & 0x33333333u) << 2);
   return ((v >> 1) & 0x55555555u) | ((v & 0x55555555u) << 1);
@@ -48,22 +49,23 @@ constexpr std::uint32_t sobol_second_digits(std::uint32_t index) {
 }
 
 // The 24 leading bits of a binary fraction as a float in [0, 1).
-constexpr float to_unit_float(std::uint32_t fraction) { return static_cast<float>(fraction >> 8) * 0x1p-24f; }
+constexpr float to_unit_float(std::uint32_t fraction) { return static_cast<float>(static_cast<std::int32_t>(fraction >> 8)) * 0x1p-24f; }
 
-// Point `index` of an Owen-scrambled van der Corput sequence; `key` picks the shuffle and the scramble.
-inline float owen_van_der_corput(std::uint32_t index, std::uint64_t key) {
-  const auto low = static_cast<std::uint32_t>(key), high = static_cast<std::uint32_t>(key >> 32);
-  const std::uint32_t shuffled = nested_uniform_scramble(index, low);
-  return to_unit_float(reverse_bits(laine_karras_permutation(shuffled, high)));
+// The two points below take their index with its bits reversed, as one index serves many dimensions; the seeds pick the shuffle of
+// the index and the scramble of each coordinate.
+
+// Point of an Owen-scrambled van der Corput sequence.
+constexpr float owen_van_der_corput(std::uint32_t reversed_index, std::uint32_t shuffle, std::uint32_t scramble) {
+  const std::uint32_t index = reverse_bits(laine_karras_permutation(reversed_index, shuffle));
+  return to_unit_float(reverse_bits(laine_karras_permutation(index, scramble)));
 }
 
-// Point `index` of an Owen-scrambled two-dimensional Sobol sequence, a (0,2)-sequence; `key` picks the shuffle and the scrambles.
-inline Vec2f owen_sobol_2d(std::uint32_t index, std::uint64_t key) {
-  const auto low = static_cast<std::uint32_t>(key), high = static_cast<std::uint32_t>(key >> 32);
-  const std::uint32_t shuffled = nested_uniform_scramble(index, low);
-  const std::uint32_t x = reverse_bits(laine_karras_permutation(shuffled, high));
-  const std::uint32_t y = reverse_bits(laine_karras_permutation(sobol_second_digits(shuffled), high * 0x9e3779b9u + low));
-  return {to_unit_float(x), to_unit_float(y)};
+// Point of an Owen-scrambled two-dimensional Sobol sequence, a (0,2)-sequence.
+constexpr Vec2f owen_sobol_2d(std::uint32_t reversed_index, std::uint32_t shuffle, std::uint32_t scramble_x,
+                              std::uint32_t scramble_y) {
+  const std::uint32_t index = reverse_bits(laine_karras_permutation(reversed_index, shuffle));
+  return {to_unit_float(reverse_bits(laine_karras_permutation(index, scramble_x))),
+          to_unit_float(reverse_bits(laine_karras_permutation(sobol_second_digits(index), scramble_y)))};
 }
 
 }  // namespace fluxfarm

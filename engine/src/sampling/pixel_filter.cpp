@@ -1,5 +1,6 @@
 #include "sampling/pixel_filter.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace fluxfarm {
@@ -45,7 +46,7 @@ float PixelFilter::sample_axis(float u) const {
   switch (kind_) {
     case PixelFilterKind::kBox: return radius_ * (2 * u - 1);
     case PixelFilterKind::kTent:  // inverse of the two parabolas of the integrated tent
-      return u < 0.5f ? radius_ * (std::sqrt(2 * u) - 1) : radius_ * (1 - std::sqrt(2 * (1 - u)));
+      return std::copysign(radius_ * (1 - std::sqrt(2 * std::min(u, 1 - u))), u - 0.5f);
     case PixelFilterKind::kGaussian: {
       const float position = u * kSteps;
       const int cell = static_cast<int>(position);

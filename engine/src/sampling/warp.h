@@ -27,11 +27,12 @@ inline SinCos sin_cos_octant(float angle) {
 // Unit disk, concentric map [Shirley97]. x^2 + y^2 of the result is uniform on [0,1]; it may exceed 1 by rounding.
 inline Vec2f square_to_uniform_disk(Vec2f u) {
   const float x = 2 * u.x - 1, y = 2 * u.y - 1;
+  // Choices by value and not by branch: which triangle a point falls into cannot be guessed.
   const bool wide = std::abs(x) > std::abs(y);
   const float radius = wide ? x : y;
-  if (radius == 0) return {0, 0};
-  const SinCos a = sin_cos_octant((kPi / 4) * ((wide ? y : x) / radius));
-  return wide ? Vec2f{radius * a.cos, radius * a.sin} : Vec2f{radius * a.sin, radius * a.cos};
+  const SinCos a = sin_cos_octant((kPi / 4) * (wide ? y : x) / (radius == 0 ? 1.0f : radius));
+  const float along = radius * a.cos, across = radius * a.sin;
+  return {wide ? along : across, wide ? across : along};
 }
 // Per unit area.
 inline float square_to_uniform_disk_pdf(Vec2f p) { return p.x * p.x + p.y * p.y <= 1 ? kInvPi : 0.0f; }

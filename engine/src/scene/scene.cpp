@@ -32,9 +32,11 @@ Scene::Scene(const SceneDescription& description, int threads)
     Surface surface;
     surface.shape = add_shape(shape, shape.emitted_radiance.has_value(), *accelerator_);
     surface.bsdf = bsdfs_[shape.material].get();
+    surface.has_continuous_lobe = surface.bsdf->has_continuous_lobe();
+    surface.chooses_lobe = surface.bsdf->chooses_lobe();
     surface.anisotropic = is_anisotropic(description.materials, description.materials[shape.material]);
     census_.anisotropic_materials |= surface.anisotropic;
-    census_.delta_materials |= !surface.bsdf->has_continuous_lobe() && !shape.emitted_radiance;
+    census_.delta_materials |= !surface.has_continuous_lobe && !shape.emitted_radiance;
     if (const auto* mesh = dynamic_cast<const TriangleMesh*>(surface.shape.get())) {
       census_.triangles += mesh->triangles();
       census_.shading_normals |= !mesh->data().normals.empty();

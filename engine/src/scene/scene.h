@@ -34,6 +34,8 @@ class Scene {
     const AreaEmitter* emitter = nullptr;  // nullptr: does not emit
     float choice_probability = 0;          // of its emitter in next-event estimation
     bool anisotropic = false;
+    // The material's answers to the questions of the same name.
+    bool has_continuous_lobe = false, chooses_lobe = false;
   };
 
   // Compiles a description whose film has the final size. `threads` build the ray accelerator; 0 takes all.

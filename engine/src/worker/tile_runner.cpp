@@ -51,7 +51,7 @@ TileSums render_tile(const Scene& scene, const Integrator& integrator, const Til
   sums.features.reserve(sums.features_size());
 
   std::vector<CameraSample> batch;
-  std::vector<SampleResult> results(kBatch);
+  std::vector<SampleResult> results(std::max<std::size_t>(kBatch, task.samples.size()));
   batch.reserve(kBatch);
   PixelSums pixel;
   const std::uint32_t last = task.samples.end - 1;
@@ -74,10 +74,9 @@ TileSums render_tile(const Scene& scene, const Integrator& integrator, const Til
   };
   for (int y = task.rect.y; y < task.rect.y + task.rect.height; ++y) {
     for (int x = task.rect.x; x < task.rect.x + task.rect.width; ++x) {
-      for (std::uint32_t index = task.samples.begin; index < task.samples.end; ++index) {
-        batch.push_back({x, y, index});
-        if (batch.size() == kBatch) flush();
-      }
+      // Whole pixels only: how a method groups a pixel's samples must not depend on the tile.
+      if (batch.size() + task.samples.size() > kBatch && !batch.empty()) flush();
+      for (std::uint32_t index = task.samples.begin; index < task.samples.end; ++index) batch.push_back({x, y, index});
     }
   }
   if (!batch.empty()) flush();

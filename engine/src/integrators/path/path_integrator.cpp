@@ -1,11 +1,40 @@
+// [Veach97] E. Veach, "Robust Monte Carlo Methods for Light Transport Simulation", PhD thesis, Stanford 1997.
 #include "integrators/path/path_integrator.h"
 
+#include <array>
 #include <limits>
 
-#include "math/frame.h"
+#include "integrators/path/path_vertex.h"
+#include "sampling/sampler.h"
 
 namespace fluxfarm {
 namespace {
+
+// Paths that advance together: at most one pass of one pixel.
+constexpr std::size_t kMaxPaths = kMaxSamplerBatch;
+// Dimensions of a path: the film first, then so many for each bounce.
+enum BounceDimension : std::uint32_t { kEmitterPoint, kDirection, kEmitterChoice, kLobe, kRoulette, kBounceDimensions };
+constexpr std::uint32_t kFilmDimension = 0;
+constexpr std::uint32_t dimension_of(int depth, BounceDimension use) {
+  return 1 + static_cast<std::uint32_t>(depth) * kBounceDimensions + use;
+}
+
+// Survival is capped so that a path between perfect reflectors ends, too.
+constexpr float kMaxSurvival = 0.95f;
+
+struct Path {
+  Rgb throughput{1.0f};
+  float eta_scale = 1;  // undoes the radiance scaling of refraction in the roulette's view of the throughput
+  float bsdf_pdf = 0;   // of the last direction; unused while `delta`
+  bool delta = true;    // next-event estimation could not have found the last direction
+  SampleResult* result = nullptr;
+};
+
+// Light on its way to a path, if the shadow ray of the same index gets through.
+struct PendingLight {
+  Rgb radiance;
+  SampleResult* result = nullptr;
+};
 
 // Power heuristic with exponent two for one sample of each of two techniques.                      [Veach97, section 9.2.4]
 float power_heuristic(float pdf, float other_pdf) {
@@ -14,135 +43,171 @@ float power_heuristic(float pdf, float other_pdf) {
   return 1 / (1 + ratio * ratio);
 }
 
-// The part of a shadow ray or of a path that a hit needs.
-struct Vertex {
-  const Scene::Surface& surface;
-  SurfacePoint point;
-  Frame frame;
-  Vec3f wo;  // local
+// The paths of one pixel, advanced bounce by bounce.
+class PathGroup {
+ public:
+  PathGroup(const Scene& scene, RayQueries& queries)
+      : scene_(scene),
+        method_(scene.method()),
+        max_depth_(method_.max_depth < 0 ? std::numeric_limits<int>::max() : method_.max_depth),
+        queries_(queries) {}
 
-  Vertex(const Scene& scene, const Ray& ray, const Hit& hit) : surface(scene.surface(hit.shape)) {
-    point = surface.shape->surface_point(ray, hit);
-    frame = Frame(point.shading_normal);
-    if (surface.anisotropic) align(surface.shape->tangent(point, hit));
-    wo = frame.to_local(-ray.direction);
-  }
-
-  // Where a ray towards `direction` (world) may start without meeting its own surface.
-  Vec3f origin_towards(Vec3f direction) const {
-    const Vec3f n = point.geometric_normal;
-    return offset_point(point.position, dot(n, direction) >= 0 ? n : -n);
+  void trace(std::span<const CameraSample> samples, std::uint64_t seed, std::span<SampleResult> results) {
+    start(samples, seed, results);
+    for (int depth = 0; paths_ > 0; ++depth) {
+      sampler_.draw_2d(dimension_of(depth, kDirection), u_direction_);
+      if (!scene_.emitters().empty()) sampler_.draw_2d(dimension_of(depth, kEmitterPoint), u_emitter_);
+      queries_.intersect({rays_.data(), paths_}, {hits_.data(), paths_});
+      std::size_t alive = 0;
+      lights_ = 0;
+      for (std::size_t i = 0; i < paths_; ++i) {
+        // A survivor moves down to the first free place, which is never above its own.
+        if (!advance(i, depth)) continue;
+        if (alive != i) {
+          path_[alive] = path_[i];
+          rays_[alive] = rays_[i];
+          sampler_.move(i, alive);
+        }
+        ++alive;
+      }
+      paths_ = alive;
+      sampler_.resize(alive);
+      gather_lights();
+    }
   }
 
  private:
-  void align(Vec3f tangent) {
-    const Vec3f s = tangent - dot(tangent, frame.n) * frame.n;
-    const float squared = length_squared(s);
-    if (!(squared > 0)) return;
-    frame.s = s / std::sqrt(squared);
-    frame.t = cross(frame.n, frame.s);
+  void start(std::span<const CameraSample> samples, std::uint64_t seed, std::span<SampleResult> results) {
+    sampler_.clear();
+    for (const CameraSample& sample : samples) sampler_.add(seed, sample.x, sample.y, sample.index);
+    sampler_.draw_2d(kFilmDimension, u_direction_);
+    paths_ = samples.size();
+    for (std::size_t i = 0; i < paths_; ++i) {
+      results[i] = {};
+      path_[i] = {.result = &results[i]};
+      const Vec2f offset = scene_.pixel_filter().sample(u_direction_[i]);
+      rays_[i] = scene_.camera().ray(static_cast<float>(samples[i].x) + 0.5f + offset.x,
+                                     static_cast<float>(samples[i].y) + 0.5f + offset.y);
+    }
   }
+
+  // Takes path i through its next vertex and leaves its next ray in place of the last. False when the path has ended.
+  bool advance(std::size_t i, int depth) {
+    Path& path = path_[i];
+    Ray& ray = rays_[i];
+    const Hit& hit = hits_[i];
+    const bool shows_emitters = depth > 0 || !method_.hide_emitters;
+    if (hit.shape == Hit::kNone) {
+      if (scene_.environment() && shows_emitters) path.result->radiance += path.throughput * *scene_.environment();
+      return false;
+    }
+    const PathVertex vertex(scene_, ray, hit);
+    if (depth == 0) note_first_hit(vertex, *path.result);
+    if (vertex.surface.emitter != nullptr && shows_emitters) add_emission(path, vertex, ray, hit);
+    if (depth + 1 >= max_depth_) return false;
+    if (vertex.surface.has_continuous_lobe && !scene_.emitters().empty()) sample_light(i, depth, vertex);
+
+    const float u_lobe = vertex.surface.chooses_lobe ? sampler_.draw_1d(dimension_of(depth, kLobe), i) : 0.0f;
+    const std::optional<BsdfSample> scatter = vertex.surface.bsdf->sample(vertex.wo, u_lobe, u_direction_[i]);
+    if (!scatter) return false;
+    path.throughput *= scatter->weight;
+    path.eta_scale *= scatter->eta * scatter->eta;
+    path.bsdf_pdf = scatter->pdf;
+    path.delta = scatter->delta;
+    if (path.throughput.is_black()) return false;
+    if (depth + 1 >= method_.rr_depth && !survives(i, depth)) return false;
+    const Vec3f direction = vertex.frame.to_world(scatter->wi);
+    ray = {vertex.origin_towards(direction), direction};
+    return true;
+  }
+
+  void note_first_hit(const PathVertex& vertex, SampleResult& result) const {
+    result.hit = true;
+    result.depth = scene_.camera().depth(vertex.point.position);
+    result.normal = vertex.wo.z < 0 ? -vertex.point.shading_normal : vertex.point.shading_normal;
+    result.albedo = vertex.surface.bsdf->albedo(vertex.wo);
+  }
+
+  // Emission found by BSDF sampling, weighted against next-event estimation, which could have found it, too.
+  static void add_emission(Path& path, const PathVertex& vertex, const Ray& ray, const Hit& hit) {
+    const Rgb emitted = vertex.surface.emitter->radiance(vertex.point, ray.direction);
+    if (emitted.is_black()) return;
+    float weight = 1;
+    if (!path.delta) {
+      const float pdf = vertex.surface.shape->pdf(ray.origin, vertex.point, hit.primitive, ray.direction, hit.t);
+      weight = power_heuristic(path.bsdf_pdf, pdf * vertex.surface.choice_probability);
+    }
+    path.result->radiance += path.throughput * emitted * weight;
+  }
+
+  // Next-event estimation: one emitter, one point of it. Leaves a shadow ray and the light that it stands for.
+  void sample_light(std::size_t i, int depth, const PathVertex& vertex) {
+    const EmitterChoice& emitters = scene_.emitters();
+    const float u_choice = emitters.single() ? 0.0f : sampler_.draw_1d(dimension_of(depth, kEmitterChoice), i);
+    const EmitterChoice::Choice choice = emitters.sample(u_choice);
+    const std::optional<EmitterSample> light = choice.emitter->sample(vertex.point.position, u_emitter_[i]);
+    if (!light) return;
+    const Vec3f wi = vertex.frame.to_local(light->wi);
+    const BsdfValue scatter = vertex.surface.bsdf->value(vertex.wo, wi);
+    if (scatter.f.is_black()) return;
+
+    // The shadow ray runs between points that are moved off both surfaces.
+    const Vec3f from = vertex.origin_towards(light->wi);
+    const Vec3f to = light->delta ? light->position : offset_point(light->position, light->normal);
+    const Vec3f segment = to - from;
+    const float distance = length(segment);
+    if (!(distance > 0)) return;
+    shadow_rays_[lights_] = {from, segment / distance, 0, distance * (1 - 1e-5f)};
+    const float weight = light->delta ? 1.0f : power_heuristic(light->pdf_solid_angle * choice.probability, scatter.pdf);
+    const Rgb arriving = scatter.f * light->weight * (std::fabs(wi.z) * weight / choice.probability);
+    pending_[lights_++] = {path_[i].throughput * arriving, path_[i].result};
+  }
+
+  void gather_lights() {
+    queries_.occluded({shadow_rays_.data(), lights_}, {occluded_.data(), lights_});
+    for (std::size_t i = 0; i < lights_; ++i) {
+      if (!occluded_[i]) pending_[i].result->radiance += pending_[i].radiance;
+    }
+  }
+
+  // Russian roulette by throughput.
+  bool survives(std::size_t i, int depth) {
+    Path& path = path_[i];
+    const float survival = std::min(max_component(path.throughput) * path.eta_scale, kMaxSurvival);
+    if (sampler_.draw_1d(dimension_of(depth, kRoulette), i) >= survival) return false;
+    path.throughput *= 1 / survival;
+    return true;
+  }
+
+  const Scene& scene_;
+  const MethodDescription& method_;
+  const int max_depth_;
+  RayQueries& queries_;
+
+  std::size_t paths_ = 0;  // alive; the first so many entries of the arrays below
+  SamplerBatch sampler_;
+  std::array<Vec2f, kMaxPaths> u_direction_, u_emitter_;
+  std::array<Path, kMaxPaths> path_;
+  std::array<Ray, kMaxPaths> rays_;
+  std::array<Hit, kMaxPaths> hits_;
+  std::size_t lights_ = 0;
+  std::array<Ray, kMaxPaths> shadow_rays_;
+  std::array<PendingLight, kMaxPaths> pending_;
+  std::array<bool, kMaxPaths> occluded_;
 };
-
-// Light from one emitter, chosen and sampled, that `vertex` scatters back along the path. Zero if something is in between.
-Rgb direct_light(const Scene& scene, const Vertex& vertex, Sampler& sampler, RayQueries& queries) {
-  const EmitterChoice& emitters = scene.emitters();
-  const EmitterChoice::Choice choice = emitters.sample(emitters.single() ? 0.0f : sampler.next_1d());
-  const std::optional<EmitterSample> light = choice.emitter->sample(vertex.point.position, sampler.next_2d());
-  if (!light) return {};
-  const Vec3f wi = vertex.frame.to_local(light->wi);
-  const BsdfValue scatter = vertex.surface.bsdf->value(vertex.wo, wi);
-  if (scatter.f.is_black()) return {};
-
-  // The shadow ray runs between points that are moved off both surfaces.
-  const Vec3f from = vertex.origin_towards(light->wi);
-  const Vec3f to = light->delta ? light->position : offset_point(light->position, light->normal);
-  const Vec3f segment = to - from;
-  const float distance = length(segment);
-  if (!(distance > 0)) return {};
-  if (queries.occluded({from, segment / distance, 0, distance * (1 - 1e-5f)})) return {};
-
-  const float weight = light->delta ? 1.0f : power_heuristic(light->pdf_solid_angle * choice.probability, scatter.pdf);
-  return scatter.f * light->weight * (std::fabs(wi.z) * weight / choice.probability);
-}
 
 }  // namespace
 
-SampleResult PathIntegrator::trace(Ray ray, Sampler& sampler, RayQueries& queries) const {
-  const Scene& scene = *scene_;
-  const MethodDescription& method = scene.method();
-  const int max_depth = method.max_depth < 0 ? std::numeric_limits<int>::max() : method.max_depth;
-  SampleResult result;
-  Rgb throughput{1.0f};
-  float eta_scale = 1;  // undoes the radiance scaling of refraction in the roulette's view of the throughput
-  float bsdf_pdf = 0;   // of the last direction; unused while `delta`
-  bool delta = true;    // next-event estimation could not have found the last direction
-
-  for (int depth = 0;; ++depth) {
-    Hit hit;
-    if (!queries.intersect(ray, hit)) {
-      if (scene.environment() && !(depth == 0 && method.hide_emitters)) result.radiance += throughput * *scene.environment();
-      return result;
-    }
-    const Vertex vertex(scene, ray, hit);
-    const Scene::Surface& surface = vertex.surface;
-    if (depth == 0) {
-      result.hit = true;
-      result.depth = scene.camera().depth(vertex.point.position);
-      result.normal = vertex.wo.z < 0 ? -vertex.point.shading_normal : vertex.point.shading_normal;
-      result.albedo = surface.bsdf->albedo(vertex.wo);
-    }
-
-    // Emission, weighted against next-event estimation, which could have found it too.
-    if (surface.emitter != nullptr && !(depth == 0 && method.hide_emitters)) {
-      const Rgb emitted = surface.emitter->radiance(vertex.point, ray.direction);
-      if (!emitted.is_black()) {
-        float weight = 1;
-        if (!delta) {
-          const float pdf = surface.shape->pdf(ray.origin, vertex.point, hit.primitive, ray.direction, hit.t);
-          weight = power_heuristic(bsdf_pdf, pdf * surface.choice_probability);
-        }
-        result.radiance += throughput * emitted * weight;
-      }
-    }
-    if (depth + 1 >= max_depth) return result;
-
-    if (surface.bsdf->has_continuous_lobe() && !scene.emitters().empty()) {
-      result.radiance += throughput * direct_light(scene, vertex, sampler, queries);
-    }
-
-    // The next direction.
-    const float u_lobe = sampler.next_1d();
-    const std::optional<BsdfSample> scatter = surface.bsdf->sample(vertex.wo, u_lobe, sampler.next_2d());
-    if (!scatter) return result;
-    throughput *= scatter->weight;
-    eta_scale *= scatter->eta * scatter->eta;
-    bsdf_pdf = scatter->pdf;
-    delta = scatter->delta;
-
-    // Russian roulette by throughput.
-    if (depth + 1 >= method.rr_depth) {
-      const float survival = std::min(max_component(throughput) * eta_scale, 0.95f);
-      if (sampler.next_1d() >= survival) return result;
-      throughput *= 1 / survival;
-    } else if (throughput.is_black()) {
-      return result;
-    }
-    const Vec3f direction = vertex.frame.to_world(scatter->wi);
-    ray = {vertex.origin_towards(direction), direction};
-  }
-}
-
 void PathIntegrator::radiance(std::span<const CameraSample> samples, std::uint64_t seed, std::span<SampleResult> results,
                               RayQueries& queries) const {
-  Sampler sampler(seed);
-  for (std::size_t i = 0; i < samples.size(); ++i) {
-    const CameraSample& sample = samples[i];
-    sampler.start_pixel_sample(sample.x, sample.y, sample.index);
-    const Vec2f offset = scene_->pixel_filter().sample(sampler.next_2d());
-    const Ray ray = scene_->camera().ray(static_cast<float>(sample.x) + 0.5f + offset.x,
-                                         static_cast<float>(sample.y) + 0.5f + offset.y);
-    results[i] = trace(ray, sampler, queries);
+  PathGroup group(*scene_, queries);
+  for (std::size_t begin = 0; begin < samples.size();) {
+    std::size_t end = begin + 1;
+    while (end < samples.size() && end - begin < kMaxPaths && samples[end].x == samples[begin].x && samples[end].y == samples[begin].y) {
+      ++end;
+    }
+    group.trace(samples.subspan(begin, end - begin), seed, results.subspan(begin, end - begin));
+    begin = end;
   }
 }
 

@@ -7,11 +7,12 @@
 //
 // A path is an absorbing Markov chain: at each bounce it survives with a probability that follows its throughput, and the
 // survivors are weighted up by it, so the expectation is unchanged.
-// [Veach97] E. Veach, "Robust Monte Carlo Methods for Light Transport Simulation", PhD thesis, Stanford 1997.
+//
+// The samples of one pixel advance together, bounce by bounce, so that their rays can be traced in packets; which rays share a
+// packet then depends on the pixel and the pass alone, and so does every bit of the result.
 #pragma once
 
 #include "integrators/integrator.h"
-#include "sampling/sampler.h"
 
 namespace fluxfarm {
 
@@ -22,8 +23,6 @@ class PathIntegrator final : public Integrator {
                 RayQueries& queries) const override;
 
  private:
-  SampleResult trace(Ray ray, Sampler& sampler, RayQueries& queries) const;
-
   const Scene* scene_ = nullptr;
 };
 

@@ -1,0 +1,34 @@
+#include "sampling/sampler.h"
+
+// The same integers on every instruction set, only faster where there are wider vectors.
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+#define FLUXFARM_VECTOR_CLONES __attribute__((target_clones("arch=x86-64-v4", "avx2", "default")))
+#else
+#define FLUXFARM_VECTOR_CLONES
+#endif
+
+namespace fluxfarm {
+namespace {
+
+// Plain arrays and no calls that are not inlined: the shape that compilers turn into vectors.
+FLUXFARM_VECTOR_CLONES void draw(const std::uint32_t* __restrict key_low, const std::uint32_t* __restrict key_high,
+                                 const std::uint32_t* __restrict reversed_index, std::uint32_t dimension, std::size_t size,
+                                 float* __restrict x, float* __restrict y) {
+  for (std::size_t i = 0; i < size; ++i) {
+    const std::uint32_t shuffle = mix_bits_32(key_low[i] + dimension * 0x9e3779b9u);
+    const std::uint32_t scramble = mix_bits_32(key_high[i] ^ shuffle);
+    const Vec2f u = owen_sobol_2d(reversed_index[i], shuffle, scramble, scramble * 0x9e3779b9u + shuffle);
+    x[i] = u.x;
+    y[i] = u.y;
+  }
+}
+
+}  // namespace
+
+void SamplerBatch::draw_2d(std::uint32_t dimension, std::array<Vec2f, kMaxSamplerBatch>& u) const {
+  std::array<float, kMaxSamplerBatch> x, y;
+  draw(key_low_.data(), key_high_.data(), reversed_index_.data(), dimension, size_, x.data(), y.data());
+  for (std::size_t i = 0; i < size_; ++i) u[i] = {x[i], y[i]};
+}
+
+}  // namespace fluxfarm
