@@ -1,14 +1,21 @@
 """Events and frames."""
 
+import asyncio
 import json
 import re
 import socket
 import threading
 import time
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 from conftest import Client
+
+from fluxfarm.api.streams import pull_events
+from fluxfarm.domain.events import Event, EventKind
+from fluxfarm.domain.job import JobState
+from fluxfarm.orchestrator.watch import Watch
 
 SCENE = "fake: size 64 64\nfake: spp 32\nfake: tile_seconds 0.01\n"
 
@@ -66,6 +73,26 @@ def test_bad_last_event_id_is_a_problem(client: Client) -> None:
     job_id = client.submit("fake: spp 1\n")
     reply = client.http.get(f"/v1/jobs/{job_id}/events", headers={"Last-Event-ID": "-1"})
     assert (reply.status_code, reply.json()["field"]) == (422, "Last-Event-ID")
+
+
+def test_end_that_falls_between_two_readings_is_not_missed() -> None:
+    end = Event(1, EventKind.END, 0.0, {"state": "SUCCEEDED"})
+
+    class EndsWhileRead:
+        readings = 0
+
+        async def events_after(self, job_id: str, seq: int, limit: int) -> list[Event]:
+            self.readings += 1
+            return [] if self.readings == 1 else [end]
+
+        async def job(self, job_id: str) -> Any:
+            return SimpleNamespace(state=JobState.SUCCEEDED)
+
+    async def read() -> list[Event | None]:
+        farm: Any = SimpleNamespace(orchestrator=SimpleNamespace(watch=Watch()), ledger=EndsWhileRead())
+        return [event async for event in pull_events(farm, "job", 0)]
+
+    assert asyncio.run(read()) == [end]
 
 
 def parts(body: bytes, content_type: str) -> list[tuple[dict[str, str], bytes]]:

@@ -110,7 +110,10 @@ async def pull_events(farm: Services, job_id: str, after: int) -> AsyncIterator[
             continue
         try:
             if not page and (await farm.ledger.job(job_id)).state in TERMINAL_STATES:
-                return  # the client has read the end before
+                # The client has read the end before, unless the job ended between the two readings.
+                if await farm.ledger.events_after(job_id, after, 1):
+                    continue
+                return
             await asyncio.wait_for(ticket.wait(), PING_INTERVAL_S)
         except FarmError:
             return  # deleted
