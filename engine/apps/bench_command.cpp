@@ -28,6 +28,7 @@ struct BenchOptions {
 
 constexpr int kRounds = 9;
 constexpr double kRoundSeconds = 0.3;
+constexpr std::uint32_t kBenchSamples = 64;  // a pass of the usual size
 constexpr std::size_t kRecordedRays = 1'000'000;  // a thread
 
 using Clock = std::chrono::steady_clock;
@@ -93,9 +94,9 @@ class PathBench {
   std::uint64_t trace_tile(RayQueries& queries) {
     const std::uint64_t turn = turn_++;
     const PixelRect tile = tiles_[turn % tiles_.size()];
-    const auto sample = static_cast<std::uint32_t>(4 * (turn / tiles_.size()));
-    render_tile(scene_, integrator_, {tile, {sample, sample + 4}, 0}, queries, never_);
-    return 4 * static_cast<std::uint64_t>(tile.pixels());
+    const auto sample = static_cast<std::uint32_t>(kBenchSamples * (turn / tiles_.size()));
+    render_tile(scene_, integrator_, {tile, {sample, sample + kBenchSamples}, 0}, queries, never_);
+    return kBenchSamples * static_cast<std::uint64_t>(tile.pixels());
   }
 
   const Scene& scene_;

@@ -10,27 +10,28 @@ Vec3f on_side(const Vec3f& w, float side) { return {w.x, w.y, side * w.z}; }
 
 class Twosided final : public Bsdf {
  public:
-  Twosided(const Bsdf& front, const Bsdf& back) : front_(front), back_(back) {}
+  Twosided(const Bsdf& front, const Bsdf& back) : sides_{&front, &back} {}
 
   BsdfValue value(const Vec3f& wo, const Vec3f& wi) const override {
     const float side = side_of(wo);
-    return (wo.z > 0 ? front_ : back_).value(on_side(wo, side), on_side(wi, side));
+    return asked(wo).value(on_side(wo, side), on_side(wi, side));
   }
 
   std::optional<BsdfSample> sample(const Vec3f& wo, float u_lobe, Vec2f u) const override {
     const float side = side_of(wo);
-    std::optional<BsdfSample> s = (wo.z > 0 ? front_ : back_).sample(on_side(wo, side), u_lobe, u);
+    std::optional<BsdfSample> s = asked(wo).sample(on_side(wo, side), u_lobe, u);
     if (s) s->wi.z *= side;
     return s;
   }
 
-  Rgb albedo(const Vec3f& wo) const override { return (wo.z > 0 ? front_ : back_).albedo(on_side(wo, side_of(wo))); }
-  bool has_continuous_lobe() const override { return front_.has_continuous_lobe() || back_.has_continuous_lobe(); }
-  bool chooses_lobe() const override { return front_.chooses_lobe() || back_.chooses_lobe(); }
+  Rgb albedo(const Vec3f& wo) const override { return asked(wo).albedo(on_side(wo, side_of(wo))); }
+  bool has_continuous_lobe() const override { return sides_[0]->has_continuous_lobe() || sides_[1]->has_continuous_lobe(); }
+  bool chooses_lobe() const override { return sides_[0]->chooses_lobe() || sides_[1]->chooses_lobe(); }
 
  private:
-  const Bsdf& front_;
-  const Bsdf& back_;
+  const Bsdf& asked(const Vec3f& wo) const { return *sides_[wo.z > 0 ? 0 : 1]; }
+
+  const Bsdf* sides_[2];  // front, back
 };
 
 }  // namespace

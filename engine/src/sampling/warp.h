@@ -31,8 +31,8 @@ inline Vec2f square_to_uniform_disk(Vec2f u) {
   const bool wide = std::abs(x) > std::abs(y);
   const float radius = wide ? x : y;
   const SinCos a = sin_cos_octant((kPi / 4) * (wide ? y : x) / (radius == 0 ? 1.0f : radius));
-  const float along = radius * a.cos, across = radius * a.sin;
-  return {wide ? along : across, wide ? across : along};
+  const float along = radius * a.cos, across = radius * a.sin, w = wide ? 1.0f : 0.0f;
+  return {w * along + (1 - w) * across, w * across + (1 - w) * along};
 }
 // Per unit area.
 inline float square_to_uniform_disk_pdf(Vec2f p) { return p.x * p.x + p.y * p.y <= 1 ? kInvPi : 0.0f; }

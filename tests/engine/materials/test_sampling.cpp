@@ -15,7 +15,7 @@ constexpr float kCosines[] = {1.0f, 0.6f, 0.08f, -0.5f};
 
 enum class Part { kAll, kReflected, kTransmitted };
 
-bool in_part(Part part, Vec3f wo, Vec3f wi) { return part == Part::kAll || (wo.z * wi.z > 0) == (part == Part::kReflected); }
+bool in_part(Part part, const Vec3f& wo, const Vec3f& wi) { return part == Part::kAll || (wo.z * wi.z > 0) == (part == Part::kReflected); }
 
 // Where a narrow lobe sits, and how narrow: the cells are gathered there.
 SphereChart chart_for(const MaterialCase& c, Vec3f wo, Part part) {
@@ -117,9 +117,9 @@ TEST(BsdfSampling, WeightIsValueTimesCosineOverPdf) {
 class Twin : public Bsdf {
  public:
   explicit Twin(const MaterialDescription& d) : inner_(make(d)) {}
-  BsdfValue value(Vec3f wo, Vec3f wi) const override { return inner_->value(wo, wi); }
-  std::optional<BsdfSample> sample(Vec3f wo, float u_lobe, Vec2f u) const override { return inner_->sample(wo, u_lobe, u); }
-  Rgb albedo(Vec3f wo) const override { return inner_->albedo(wo); }
+  BsdfValue value(const Vec3f& wo, const Vec3f& wi) const override { return inner_->value(wo, wi); }
+  std::optional<BsdfSample> sample(const Vec3f& wo, float u_lobe, Vec2f u) const override { return inner_->sample(wo, u_lobe, u); }
+  Rgb albedo(const Vec3f& wo) const override { return inner_->albedo(wo); }
   bool has_continuous_lobe() const override { return true; }
 
  private:
@@ -129,7 +129,7 @@ class Twin : public Bsdf {
 class PdfWithoutCosine final : public Twin {
  public:
   using Twin::Twin;
-  BsdfValue value(Vec3f wo, Vec3f wi) const override {
+  BsdfValue value(const Vec3f& wo, const Vec3f& wi) const override {
     BsdfValue v = Twin::value(wo, wi);
     if (v.pdf > 0) v.pdf = 0.5f * kInvPi;
     return v;
@@ -139,7 +139,7 @@ class PdfWithoutCosine final : public Twin {
 class LosesOnePercent final : public Twin {
  public:
   using Twin::Twin;
-  std::optional<BsdfSample> sample(Vec3f wo, float u_lobe, Vec2f u) const override {
+  std::optional<BsdfSample> sample(const Vec3f& wo, float u_lobe, Vec2f u) const override {
     if (u_lobe > 0.99f) return std::nullopt;
     return Twin::sample(wo, u_lobe, u);
   }
@@ -148,7 +148,7 @@ class LosesOnePercent final : public Twin {
 class TurnedByTwoDegrees final : public Twin {
  public:
   using Twin::Twin;
-  std::optional<BsdfSample> sample(Vec3f wo, float u_lobe, Vec2f u) const override {
+  std::optional<BsdfSample> sample(const Vec3f& wo, float u_lobe, Vec2f u) const override {
     auto s = Twin::sample(wo, u_lobe, u);
     if (s) s->wi = {s->wi.x - 0.035f * s->wi.y, s->wi.y + 0.035f * s->wi.x, s->wi.z};
     return s;
