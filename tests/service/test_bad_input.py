@@ -5,7 +5,10 @@ import json
 from typing import Any
 
 import pytest
-from conftest import Client
+from farm_client import Client, fake_engine
+
+from fluxfarm.cli.embedded import EmbeddedService
+from fluxfarm.settings import Settings
 
 PROBLEM = "urn:fluxfarm:problem:"
 SHA = "a" * 64
@@ -47,17 +50,8 @@ BAD_MEMBERS: list[tuple[str, dict[str, Any], str]] = [
 @pytest.fixture(scope="module")
 def shared(tmp_path_factory: pytest.TempPathFactory) -> Any:
     """One service for all bad requests: it has to survive every one of them."""
-    import sys
-
-    from conftest import FAKE_ENGINE
-
-    from fluxfarm.cli.embedded import EmbeddedService
-    from fluxfarm.settings import Settings
-
     folder = tmp_path_factory.mktemp("bad")
-    program = folder / "fake-engine"
-    program.write_text(f'#!/bin/sh\nexec "{sys.executable}" "{FAKE_ENGINE}" "$@"\n')
-    program.chmod(0o755)
+    program = fake_engine(folder)
     with EmbeddedService(
         Settings(data=folder / "data", port=0, engine=str(program), max_asset_bytes=1 << 20)
     ) as service:

@@ -9,7 +9,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from conftest import Client
+from farm_client import Client
 
 from fluxfarm.settings import Settings
 

@@ -2,14 +2,12 @@
 
 import os
 import signal
-import subprocess
-import sys
 import time
 from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from conftest import Client
+from farm_client import Client, ServiceProcess
 
 from fluxfarm.settings import Settings
 
@@ -81,37 +79,6 @@ def test_frame_beyond_the_limit_and_crop_outside_it_fail_the_job(start: Callable
     job = client.finish(client.submit("fake: size 30 30\n", **body))
     assert job["state"] == "FAILED"
     assert "crop = 20,0 20x20" in job["reason"]
-
-
-class ServiceProcess:
-    """`fluxfarm serve` as a process of its own, so that it can be killed."""
-
-    def __init__(self, settings: Settings, workers: int) -> None:
-        environment = {
-            **os.environ,
-            "FLUXFARM_DATA": str(settings.data),
-            "FLUXFARM_ENGINE": settings.engine,
-            "FLUXFARM_PORT": "0",
-            "FLUXFARM_TILE_SIZE": "16",
-            "FLUXFARM_WORKERS": str(workers),
-            "FLUXFARM_THREADS": "1",
-        }
-        command = [sys.executable, "-c", "from fluxfarm.cli import main; main()", "serve"]
-        self.process = subprocess.Popen(
-            command, env=environment, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True
-        )
-        assert self.process.stdout is not None
-        self.line = self.process.stdout.readline()
-        self.client = Client(self.line.split()[-1]) if self.line else None
-
-    def end(self, number: int) -> int:
-        self.process.send_signal(number)
-        status = self.process.wait(20)
-        assert self.process.stdout is not None
-        self.process.stdout.close()
-        if self.client is not None:
-            self.client.http.close()
-        return status
 
 
 def gone(pid: int) -> bool:

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 
-from conftest import Client
+from farm_client import Client
 
 SCENE = "fake: size 64 48\nfake: spp 8\n"
 

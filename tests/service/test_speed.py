@@ -5,8 +5,7 @@ import time
 from pathlib import Path
 
 import pytest
-from conftest import Client
-from test_faults import ServiceProcess
+from farm_client import Client, ServiceProcess
 
 from fluxfarm.cli.embedded import EmbeddedService
 from fluxfarm.settings import Settings

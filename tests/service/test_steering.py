@@ -5,7 +5,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from conftest import Client
+from farm_client import Client
 
 SLOW = "fake: size 64 64\nfake: spp 64\nfake: tile_seconds 0.05\n"
 

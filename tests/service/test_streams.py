@@ -10,7 +10,7 @@ from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
-from conftest import Client
+from farm_client import Client
 
 from fluxfarm.api.streams import pull_events
 from fluxfarm.domain.events import Event, EventKind

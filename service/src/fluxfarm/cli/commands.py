@@ -6,7 +6,7 @@ import sys
 import tempfile
 import uuid
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import replace
 from pathlib import Path
 from typing import Annotated, Any
@@ -93,11 +93,11 @@ def render(
     from fluxfarm.cli.follow import describe, follow, outcome
 
     with _service(server, threads, workers) as url, ServiceClient(url) as client:
-        job = client.submit(job_body(client, found, options), uuid.uuid4().hex)
+        body, key = job_body(client, found, options), uuid.uuid4().hex
         try:
-            job = follow(client, job["id"])
+            job = follow(client, client.submit(body, key)["id"])
         except KeyboardInterrupt:
-            client.call("POST", f"/v1/jobs/{job['id']}:cancel")
+            _give_up(client, body, key)
             raise
         outcome(job)
         _fetch(client, job["id"], out, png, None)
@@ -234,6 +234,12 @@ def _service(server: str | None, threads: int | None, workers: int | None) -> It
         settings = _changed(from_environment(), threads=threads, workers=workers)
         with EmbeddedService(replace(settings, data=Path(folder), port=0)) as service:
             yield service.url
+
+
+def _give_up(client: Any, body: dict[str, Any], key: str) -> None:
+    """Cancel the job that `body` and `key` made, even if the reply to its submission was not read any more."""
+    with suppress(CommandError):
+        client.call("POST", f"/v1/jobs/{client.submit(body, key)['id']}:cancel")
 
 
 def _fetch(client: Any, job_id: str, out: Path, png: Path | None, revision: int | None) -> None:
