@@ -1,0 +1,137 @@
+// The worker's pieces: tiles, codec, frames, and the real process over a socket pair.
+#include <gtest/gtest.h>
+
+#include <fcntl.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <thread>
+
+#include "support/error.h"
+#include "support/scene_builder.h"
+#include "worker/codec.h"
+#include "worker/frame_socket.h"
+#include "worker/tile_runner.h"
+
+namespace fluxfarm::testing {
+namespace {
+
+SceneDescription small_scene() {
+  SceneBuilder scene;
+  scene.floor(0, 4, scene.diffuse(0.7f));
+  scene.lamp_down(0.3f, 2, 0, 1, 1, scene.diffuse(0), 4);
+  scene.shape(SphereDescription{{0, 0.5f, 0}, 0.5f}, scene.add(DielectricDescription{}));
+  scene.look({0, 1.5, -4}, {0, 0.4, 0});
+  SceneDescription description = scene.description();
+  description.camera.fov_degrees = 40;
+  description.film.width = 33;
+  description.film.height = 21;
+  return description;
+}
+
+Film render(const SceneDescription& description, std::uint32_t spp, int tile, int threads) {
+  const Scene scene(description, 1);
+  const auto integrator = make_integrator("path", scene);
+  const std::atomic<bool> never{false};
+  return render_frame(scene, *integrator, {{0, 0, 33, 21}, tile, threads, 5, {spp, {}, {}}}, never).film;
+}
+
+TEST(FrameRenderer, FrameIsIdenticalForAnyTileSizeAndNumberOfThreads) {
+  const SceneDescription description = small_scene();
+  const Image reference = render(description, 52, 64, 1).image({0, 0, 33, 21}, {});
+  for (const auto& [tile, threads] : {std::pair{16, 2}, std::pair{5, 3}, std::pair{1, 1}}) {
+    const Image other = render(description, 52, tile, threads).image({0, 0, 33, 21}, {});
+    for (std::size_t c = 0; c < reference.channels.size(); ++c) {
+      EXPECT_EQ(reference.channels[c].values, other.channels[c].values) << reference.channels[c].name << ", tiles of " << tile;
+    }
+  }
+}
+
+TEST(FrameRenderer, StopsNearItsTimeAndReportsEachPass) {
+  const Scene scene(small_scene(), 1);
+  const auto integrator = make_integrator("path", scene);
+  const std::atomic<bool> never{false};
+  int passes = 0;
+  const FrameResult result = render_frame(scene, *integrator, {{0, 0, 33, 21}, 16, 1, 5, {{}, 0.5, {}}}, never,
+                                          [&](const TimelinePoint&) { ++passes; });
+  EXPECT_GT(result.seconds, 0.3);
+  EXPECT_LT(result.seconds, 1.0);
+  EXPECT_EQ(static_cast<std::size_t>(passes), result.timeline.size());
+  EXPECT_EQ(result.summary.max_samples, result.timeline.back().spp);
+}
+
+TEST(FrameRenderer, ErrorGoalIsReachedInTheEstimateAndNotBefore) {
+  const Scene scene(small_scene(), 1);
+  const auto integrator = make_integrator("path", scene);
+  const std::atomic<bool> never{false};
+  const FrameResult result = render_frame(scene, *integrator, {{0, 0, 33, 21}, 16, 1, 5, {{}, {}, 0.2}}, never);
+  ASSERT_GE(result.timeline.size(), 2u);
+  EXPECT_LE(*result.timeline.back().error, 0.2);
+  const TimelinePoint& before = result.timeline[result.timeline.size() - 2];
+  EXPECT_TRUE(before.spp < 16 || *before.error > 0.2);
+}
+
+TEST(TileRunner, EndsSoonAfterBeingCancelled) {
+  const Scene scene(small_scene(), 1);
+  const auto integrator = make_integrator("path", scene);
+  RayQueries queries(scene.accelerator());
+  std::atomic<bool> cancelled{false};
+  std::jthread canceller([&] {
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    cancelled = true;
+  });
+  const auto start = std::chrono::steady_clock::now();
+  EXPECT_THROW(render_tile(scene, *integrator, {{0, 0, 33, 21}, {0, 1u << 20}, 0}, queries, cancelled), CancelledError);
+  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::milliseconds(300));
+}
+
+TEST(TileRunner, TilesCoverTheImageExactlyOnce) {
+  std::vector<int> covered(33 * 21);
+  for (const PixelRect& tile : make_tiles({0, 0, 33, 21}, 8)) {
+    for (int y = tile.y; y < tile.y + tile.height; ++y) {
+      for (int x = tile.x; x < tile.x + tile.width; ++x) ++covered[static_cast<std::size_t>(y * 33 + x)];
+    }
+  }
+  EXPECT_EQ(covered, std::vector<int>(33 * 21, 1));
+}
+
+TEST(Codec, TileSumsSurviveTheWire) {
+  const Scene scene(small_scene(), 1);
+  const auto integrator = make_integrator("path", scene);
+  RayQueries queries(scene.accelerator());
+  const std::atomic<bool> never{false};
+  const TileSums sums = render_tile(scene, *integrator, {{3, 4, 7, 5}, {2, 4}, 9}, queries, never);
+  const TileSums back = decode_tile_sums(encode_tile_sums(sums), "here");
+  EXPECT_EQ(sums.radiance, back.radiance);
+  EXPECT_EQ(sums.features, back.features);
+  EXPECT_EQ(sums.rect, back.rect);
+  EXPECT_EQ(sums.samples, back.samples);
+  EXPECT_EQ(sums.seed, back.seed);
+}
+
+TEST(Codec, DamagedTileSumsAreAnError) {
+  const std::string bytes = encode_tile_sums({{0, 0, 2, 2}, {0, 1}, 0, std::vector<float>(12), std::vector<float>(32), 0});
+  EXPECT_NO_THROW(decode_tile_sums(bytes, "here"));
+  EXPECT_THROW(decode_tile_sums(bytes.substr(0, bytes.size() - 9), "here"), ResourceError);
+  EXPECT_THROW(decode_tile_sums("nonsense", "here"), ResourceError);
+  EXPECT_THROW(decode_tile_sums(encode_tile_sums({{0, 0, 2, 2}, {0, 1}, 0, std::vector<float>(11), std::vector<float>(32), 0}), "here"),
+               ResourceError);
+}
+
+TEST(FrameSocket, RefusesFramesThatAreTooLongAndEndsAtEndOfFile) {
+  int fds[2];
+  ASSERT_EQ(socketpair(AF_UNIX, SOCK_STREAM, 0, fds), 0);
+  FrameSocket a(fds[0]), b(fds[1]);
+  EXPECT_TRUE(a.write("hello"));
+  EXPECT_EQ(b.read(), "hello");
+  const unsigned char too_long[4] = {0, 0, 0, 0x7f};
+  ASSERT_EQ(write(fds[0], too_long, 4), 4);
+  EXPECT_THROW(b.read(), Error);
+  close(fds[0]);
+  EXPECT_EQ(b.read(), std::nullopt);
+  close(fds[1]);
+}
+
+}  // namespace
+}  // namespace fluxfarm::testing
