@@ -196,7 +196,7 @@ def serve(
 @app.command()
 def doctor() -> None:
     """Check that a service could run here."""
-    from fluxfarm.cli.doctor import examine
+    from fluxfarm.doctor import examine
 
     marks = {True: "ok", None: "note", False: "FAILED"}
     findings = list(examine(from_environment()))
