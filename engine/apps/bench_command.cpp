@@ -28,7 +28,7 @@ struct BenchOptions {
 
 constexpr int kRounds = 9;
 constexpr double kRoundSeconds = 0.3;
-constexpr std::uint32_t kBenchSamples = 64;  // a pass of the usual size
+constexpr std::uint32_t kBenchSamples = 64;       // a pass of the usual size
 constexpr std::size_t kRecordedRays = 1'000'000;  // a thread
 
 using Clock = std::chrono::steady_clock;
@@ -39,7 +39,6 @@ double median(std::vector<double> values) {
   std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2), values.end());
   return values[values.size() / 2];
 }
-
 
 class PathBench {
  public:
@@ -123,14 +122,11 @@ void bench(const BenchOptions& options) {
     embree_rates.push_back(path.replay_round());
     ratios.push_back(path_rates.back() / embree_rates.back());
   }
-  const nlohmann::json result = {{"scene", options.scene.scene.string()},
-                                 {"threads", threads},
-                                 {"triangles", scene.census().triangles},
-                                 {"rounds", kRounds},
-                                 {"path_rays_per_second", median(path_rates)},
-                                 {"path_samples_per_second", median(sample_rates)},
-                                 {"embree_rays_per_second", median(embree_rates)},
-                                 {"ratio", median(ratios)}};
+  const nlohmann::json result = {
+      {"scene", options.scene.scene.string()},          {"threads", threads},
+      {"triangles", scene.census().triangles},          {"rounds", kRounds},
+      {"path_rays_per_second", median(path_rates)},     {"path_samples_per_second", median(sample_rates)},
+      {"embree_rays_per_second", median(embree_rates)}, {"ratio", median(ratios)}};
   if (options.json) {
     std::printf("%s\n", result.dump(2).c_str());
     return;
@@ -149,7 +145,9 @@ void add_bench_command(CLI::App& app) {
   CLI::App* command = app.add_subcommand("bench", "Measure the engine: bench [path] SCENE");
   const auto options = std::make_shared<BenchOptions>();
   const auto words = std::make_shared<std::vector<std::string>>();
-  command->add_option("WHAT_AND_SCENE", *words, "What to measure (path, the default) and the scene file")->required()->expected(1, 2);
+  command->add_option("WHAT_AND_SCENE", *words, "What to measure (path, the default) and the scene file")
+      ->required()
+      ->expected(1, 2);
   command->add_option("--size", options->scene.size, "Film size WxH in pixels");
   command->add_option("--threads", options->threads, "Threads; default: all cores")->check(CLI::Range(1, 1024));
   command->add_flag("--json", options->json, "As JSON");

@@ -8,6 +8,7 @@
 #include "film/pass_schedule.h"
 #include "scene_options.h"
 #include "support/build_info.h"
+#include "worker/build_id.h"
 #include "worker/messages.h"
 #include "worker/plan.h"
 #include "worker/worker_process.h"
@@ -17,7 +18,7 @@ namespace {
 
 void print_info(bool json) {
   const nlohmann::json info = {{"engine", engine_version()},
-                               {"build", engine_build()},
+                               {"build", engine_build_id()},
                                {"compiler", compiler()},
                                {"build_options", build_options()},
                                {"instruction_set", instruction_set()},

@@ -13,8 +13,8 @@
 #include "io/exr.h"
 #include "io/png.h"
 #include "scene_options.h"
-#include "support/build_info.h"
 #include "support/error.h"
+#include "worker/build_id.h"
 #include "worker/frame_renderer.h"
 #include "worker/plan.h"
 
@@ -78,8 +78,8 @@ void render(const RenderOptions& options) {
   for (const std::string& warning : scene.warnings()) std::fprintf(stderr, "warning: %s\n", warning.c_str());
 
   const FilmDescription& film = scene.film();
-  FrameSettings settings{{film.crop_x, film.crop_y, film.crop_width, film.crop_height}, options.tile, threads, options.seed,
-                         options.goal};
+  FrameSettings settings{
+      {film.crop_x, film.crop_y, film.crop_width, film.crop_height}, options.tile, threads, options.seed, options.goal};
   if (!settings.goal.spp && !settings.goal.seconds && !settings.goal.rel_error) {
     const int asked = description.samples_per_pixel;
     settings.goal.spp = asked > 0 ? static_cast<std::uint32_t>(asked) : kDefaultSpp;
@@ -88,7 +88,7 @@ void render(const RenderOptions& options) {
   if (isatty(STDERR_FILENO) != 0) std::fprintf(stderr, "\n");
   watch.lap();
 
-  const Image image = result.film.image(settings.crop, {"", "", "path", engine_build(), options.seed});
+  const Image image = result.film.image(settings.crop, {"", "", "path", engine_build_id(), options.seed});
   write_exr(options.exr, image);
   if (!options.png.empty()) write_png(options.png, image);
   const double write = watch.lap();
@@ -103,23 +103,24 @@ void render(const RenderOptions& options) {
   for (const TimelinePoint& point : result.timeline) {
     timeline.push_back({{"seconds", point.seconds}, {"spp", point.spp}, {"error", or_null(point.error)}});
   }
-  write_report(options.report,
-               {{"engine", engine_build()},
-                {"integrator", "path"},
-                {"size", {film.width, film.height}},
-                {"threads", threads},
-                {"seed", options.seed},
-                {"seconds", {{"load", load}, {"build", build}, {"prepare", prepare}, {"render", result.seconds}, {"write", write}}},
-                {"spp", result.summary.max_samples},
-                {"samples", static_cast<std::uint64_t>(result.summary.max_samples) * static_cast<std::uint64_t>(settings.crop.pixels())},
-                {"rays", result.rays},
-                {"rays_per_second", static_cast<double>(result.rays) / result.seconds},
-                {"mean", result.summary.mean},
-                // Path tracing has no bias of its own; energy that it never sampled is not audited yet, so that is left open.
-                {"error", {{"noise", or_null(result.summary.error_noise)}, {"bias", 0.0}, {"unseen", nullptr}}},
-                {"timeline", timeline},
-                {"plan", nlohmann::json::parse(plan_json(scene))},
-                {"warnings", warnings}});
+  write_report(
+      options.report,
+      {{"engine", engine_build_id()},
+       {"integrator", "path"},
+       {"size", {film.width, film.height}},
+       {"threads", threads},
+       {"seed", options.seed},
+       {"seconds", {{"load", load}, {"build", build}, {"prepare", prepare}, {"render", result.seconds}, {"write", write}}},
+       {"spp", result.summary.max_samples},
+       {"samples", static_cast<std::uint64_t>(result.summary.max_samples) * static_cast<std::uint64_t>(settings.crop.pixels())},
+       {"rays", result.rays},
+       {"rays_per_second", static_cast<double>(result.rays) / result.seconds},
+       {"mean", result.summary.mean},
+       // Path tracing has no bias of its own; energy that it never sampled is not audited yet, so that is left open.
+       {"error", {{"noise", or_null(result.summary.error_noise)}, {"bias", 0.0}, {"unseen", nullptr}}},
+       {"timeline", timeline},
+       {"plan", nlohmann::json::parse(plan_json(scene))},
+       {"warnings", warnings}});
 }
 
 }  // namespace
@@ -139,7 +140,9 @@ void add_render_command(CLI::App& app) {
   spp->excludes(seconds)->excludes(error);
   seconds->excludes(error);
   command->add_option("--threads", options->threads, "Render threads; default: all cores")->check(CLI::Range(1, 1024));
-  command->add_option("--tile", options->tile, "Tile side in pixels; does not change the result")->check(CLI::Range(1, 4096))->capture_default_str();
+  command->add_option("--tile", options->tile, "Tile side in pixels; does not change the result")
+      ->check(CLI::Range(1, 4096))
+      ->capture_default_str();
   command->add_option("--seed", options->seed, "Seed of the random numbers")->capture_default_str();
   command->callback([options] { render(*options); });
 }

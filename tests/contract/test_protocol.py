@@ -15,7 +15,7 @@ from fluxfarm.domain.tiles import PixelRect
 
 SCENE = SceneRef("key", Path("/scene"), "scene.xml", 0, 0, "")
 RECTS = (PixelRect(0, 0, 16, 16), PixelRect(16, 0, 8, 16))
-LEASE = RenderLease(7, "job", SCENE, 24, 16, "path", 2**53 - 1, 3, SampleRange(4, 8), (0, 1), RECTS)
+LEASE = RenderLease(7, "job", SCENE, 2**53 - 1, 3, SampleRange(4, 8), (0, 1), RECTS)
 
 
 def test_lease_becomes_one_frame_with_its_length_in_front() -> None:

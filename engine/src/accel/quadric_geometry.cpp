@@ -51,7 +51,8 @@ void bound(const RTCBoundsFunctionArguments* arguments) {
 
 template <typename Quadric>
 float hit_distance(const void* quadric, RTCRayN* rays, unsigned n, unsigned i) {
-  return hit_distance(*static_cast<const Quadric*>(quadric), {RTCRayN_org_x(rays, n, i), RTCRayN_org_y(rays, n, i), RTCRayN_org_z(rays, n, i)},
+  return hit_distance(*static_cast<const Quadric*>(quadric),
+                      {RTCRayN_org_x(rays, n, i), RTCRayN_org_y(rays, n, i), RTCRayN_org_z(rays, n, i)},
                       {RTCRayN_dir_x(rays, n, i), RTCRayN_dir_y(rays, n, i), RTCRayN_dir_z(rays, n, i)},
                       {RTCRayN_tnear(rays, n, i), RTCRayN_tfar(rays, n, i)});
 }

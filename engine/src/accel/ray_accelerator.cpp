@@ -45,11 +45,33 @@ struct RayAccelerator::Impl {
   }
 };
 
+namespace {
+
+// The set that Embree picks when it starts: the widest that it was built for and that the processor has.
+std::string chosen_instruction_set() {
+#if defined(__x86_64__)
+  __builtin_cpu_init();
+  const bool avx512 = __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
+                      __builtin_cpu_supports("avx512cd") && __builtin_cpu_supports("avx512bw") &&
+                      __builtin_cpu_supports("avx512vl");
+  if (avx512) return "AVX-512";
+  if (__builtin_cpu_supports("avx2")) return "AVX2";
+  if (__builtin_cpu_supports("avx")) return "AVX";
+  return "SSE";
+#else
+  return "baseline";
+#endif
+}
+
+}  // namespace
+
 std::string ray_library_version() {
   RTCDevice device = rtcNewDevice("threads=1,set_affinity=0");
   const auto version = rtcGetDeviceProperty(device, RTC_DEVICE_PROPERTY_VERSION);
   rtcReleaseDevice(device);
-  return std::to_string(version / 10000) + "." + std::to_string(version / 100 % 100) + "." + std::to_string(version % 100);
+  const auto number =
+      std::to_string(version / 10000) + "." + std::to_string(version / 100 % 100) + "." + std::to_string(version % 100);
+  return number + " " + chosen_instruction_set();
 }
 
 void prepare_render_thread() {
@@ -62,7 +84,8 @@ void prepare_render_thread() {
 RayAccelerator::RayAccelerator(int threads) : impl_(std::make_unique<Impl>()) {
   const std::string config = "threads=" + std::to_string(threads);
   impl_->device = rtcNewDevice(config.c_str());
-  if (impl_->device == nullptr) throw ResourceError("Embree cannot make a device (error " + std::to_string(rtcGetDeviceError(nullptr)) + ")");
+  if (impl_->device == nullptr)
+    throw ResourceError("Embree cannot make a device (error " + std::to_string(rtcGetDeviceError(nullptr)) + ")");
   const auto loaded = rtcGetDeviceProperty(impl_->device, RTC_DEVICE_PROPERTY_VERSION);
   if (loaded != RTC_VERSION) {
     throw ResourceError("Embree library " + std::to_string(loaded) + " was loaded, but the engine was built with headers of " +
@@ -100,8 +123,18 @@ void RayAccelerator::build() {
 
 bool RayAccelerator::intersect(const Ray& ray, Hit& hit) const {
   RTCRayHit query;
-  query.ray = {ray.origin.x, ray.origin.y, ray.origin.z, ray.t_min, ray.direction.x, ray.direction.y, ray.direction.z,
-               0,            ray.t_max,    0xffffffffu,  0,         0};
+  query.ray = {ray.origin.x,
+               ray.origin.y,
+               ray.origin.z,
+               ray.t_min,
+               ray.direction.x,
+               ray.direction.y,
+               ray.direction.z,
+               0,
+               ray.t_max,
+               0xffffffffu,
+               0,
+               0};
   query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
   query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
   embree_intersect(impl_->scene, query);
@@ -111,8 +144,18 @@ bool RayAccelerator::intersect(const Ray& ray, Hit& hit) const {
 }
 
 bool RayAccelerator::occluded(const Ray& ray) const {
-  RTCRay query = {ray.origin.x, ray.origin.y, ray.origin.z, ray.t_min, ray.direction.x, ray.direction.y, ray.direction.z,
-                  0,            ray.t_max,    0xffffffffu,  0,         0};
+  RTCRay query = {ray.origin.x,
+                  ray.origin.y,
+                  ray.origin.z,
+                  ray.t_min,
+                  ray.direction.x,
+                  ray.direction.y,
+                  ray.direction.z,
+                  0,
+                  ray.t_max,
+                  0xffffffffu,
+                  0,
+                  0};
   embree_occluded(impl_->scene, query);
   return query.tfar < 0;
 }

@@ -19,7 +19,8 @@
 
 namespace fluxfarm {
 
-// Version of the loaded library and the instruction sets it may use, for `info`.
+// Version of the loaded library and the instruction set that it chooses on this machine: its hits may differ in the last bits
+// from one set to another.
 std::string ray_library_version();
 
 // Switches the calling thread to flush denormals to zero, as Embree asks of every thread that traces rays.

@@ -29,7 +29,8 @@ class RayQueries {
  private:
   void count(std::span<const Ray> rays, bool occlusion) {
     rays_ += rays.size();
-    if (recording_ == nullptr) [[likely]] return;
+    if (recording_ == nullptr) [[likely]]
+      return;
     for (const Ray& ray : rays) recording_->push_back({ray, occlusion});
   }
 

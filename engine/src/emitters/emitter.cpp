@@ -5,8 +5,7 @@ namespace fluxfarm {
 std::optional<EmitterSample> AreaEmitter::sample(Vec3f reference, Vec2f u) const {
   const std::optional<ShapeSample> s = shape_.sample(reference, u);
   if (!s || dot(s->normal, s->wi) >= 0) return std::nullopt;
-  return EmitterSample{s->position, s->normal,          s->wi, s->distance, radiance_ / s->pdf_solid_angle,
-                       s->pdf_solid_angle, false};
+  return EmitterSample{s->position, s->normal, s->wi, s->distance, radiance_ / s->pdf_solid_angle, s->pdf_solid_angle, false};
 }
 
 std::optional<EmitterSample> PointEmitter::sample(Vec3f reference, Vec2f) const {

@@ -41,9 +41,7 @@ class AreaEmitter final : public Emitter {
   Rgb power() const override { return radiance_ * (kPi * shape_.area()); }
 
   // Radiance that leaves `point` towards -wi, where wi is the direction in which the point is seen. Zero on the back.
-  Rgb radiance(const SurfacePoint& point, Vec3f wi) const {
-    return dot(point.geometric_normal, wi) < 0 ? radiance_ : Rgb{};
-  }
+  Rgb radiance(const SurfacePoint& point, Vec3f wi) const { return dot(point.geometric_normal, wi) < 0 ? radiance_ : Rgb{}; }
   const Shape& shape() const { return shape_; }
 
  private:

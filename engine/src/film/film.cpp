@@ -72,8 +72,7 @@ Film::Film(int width, int height, PixelRect crop)
     : width_(width), height_(height), crop_(crop), pixels_(static_cast<std::size_t>(crop.pixels())) {}
 
 void Film::merge(const TileSums& tile) {
-  if (!crop_.contains(tile.rect) || tile.radiance.size() != tile.radiance_size() ||
-      tile.features.size() != tile.features_size()) {
+  if (!crop_.contains(tile.rect) || tile.radiance.size() != tile.radiance_size() || tile.features.size() != tile.features_size()) {
     throw Error("tile does not fit the film: rect " + std::to_string(tile.rect.x) + "," + std::to_string(tile.rect.y) + " " +
                 std::to_string(tile.rect.width) + "x" + std::to_string(tile.rect.height));
   }

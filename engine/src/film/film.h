@@ -20,7 +20,8 @@
 
 namespace fluxfarm {
 
-// 97.5 % quantile of Student's t with R - 1 = 7 degrees of freedom: pixel mean +- kNoiseInterval95 * error.noise is the 95 % interval.
+// 97.5 % quantile of Student's t with R - 1 = 7 degrees of freedom: pixel mean +- kNoiseInterval95 * error.noise is the 95 %
+// interval.
 inline constexpr float kNoiseInterval95 = 2.364624f;
 
 struct FilmSummary {

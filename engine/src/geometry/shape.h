@@ -16,9 +16,9 @@ namespace fluxfarm {
 // A point of a surface chosen as seen from a reference point.
 struct ShapeSample {
   Vec3f position;
-  Vec3f normal;              // unit, front side
-  Vec3f wi;                  // unit, from the reference point to `position`
-  float distance = 0;        // m
+  Vec3f normal;               // unit, front side
+  Vec3f wi;                   // unit, from the reference point to `position`
+  float distance = 0;         // m
   float pdf_solid_angle = 0;  // of wi, at the reference point, sr^-1
 };
 

@@ -31,8 +31,8 @@ SurfacePoint TriangleMesh::surface_point(const Ray&, const Hit& hit) const {
   point.shading_normal = point.geometric_normal;
   if (!data_.normals.empty()) {
     const std::uint32_t* index = data_.indices.data() + 3 * static_cast<std::size_t>(hit.primitive);
-    const Vec3f n = (1 - hit.u - hit.v) * data_.normals[index[0]] + hit.u * data_.normals[index[1]] +
-                    hit.v * data_.normals[index[2]];
+    const Vec3f n =
+        (1 - hit.u - hit.v) * data_.normals[index[0]] + hit.u * data_.normals[index[1]] + hit.v * data_.normals[index[2]];
     const float squared = length_squared(n);
     if (squared > 0) point.shading_normal = (side_ / std::sqrt(squared)) * n;
   }

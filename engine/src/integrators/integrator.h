@@ -23,9 +23,9 @@ struct CameraSample {
 
 // What a camera sample brings back.
 struct SampleResult {
-  Rgb radiance;   // W m^-2 sr^-1
-  Rgb albedo;     // of the first hit; of an emitter without reflection, black
-  Vec3f normal;   // shading normal of the first hit, world, turned towards the camera
+  Rgb radiance;     // W m^-2 sr^-1
+  Rgb albedo;       // of the first hit; of an emitter without reflection, black
+  Vec3f normal;     // shading normal of the first hit, world, turned towards the camera
   float depth = 0;  // of the first hit along the view axis, m
   bool hit = false;
 };
@@ -37,8 +37,8 @@ class Integrator {
   // Builds what the method needs for this scene. Called once, before any radiance().
   virtual void prepare(const Scene& scene) = 0;
 
-  // Estimates the radiance of each sample, in the order given; samples of one pixel stand together. The results of a pixel depend on
-  // the scene, the seed and the pixel's samples alone. Safe to call from many threads, each with its own queries.
+  // Estimates the radiance of each sample, in the order given; samples of one pixel stand together. The results of a pixel depend
+  // on the scene, the seed and the pixel's samples alone. Safe to call from many threads, each with its own queries.
   virtual void radiance(std::span<const CameraSample> samples, std::uint64_t seed, std::span<SampleResult> results,
                         RayQueries& queries) const = 0;
 };

@@ -48,8 +48,7 @@ class Builder {
     // nlohmann's text reads "[json.exception.parse_error.101] parse error at line 1, column 2: what": keep what.
     std::string what = error.what();
     if (const std::size_t tail = what.find(": "); tail != std::string::npos) what = what.substr(tail + 2);
-    throw SceneError(name_ + ":" + std::to_string(line),
-                     "column " + std::to_string(column) + ": is not JSON: " + printable(what));
+    throw SceneError(name_ + ":" + std::to_string(line), "column " + std::to_string(column) + ": is not JSON: " + printable(what));
   }
 
   JsonValue result() { return std::move(result_); }

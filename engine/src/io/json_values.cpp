@@ -62,8 +62,7 @@ std::vector<double> read_rows(const JsonValue& json, const std::string& place) {
     if (!row || row->size() != 4) break;
     numbers.insert(numbers.end(), row->begin(), row->end());
   }
-  if (numbers.size() != 16)
-    throw SceneError(place, "is " + described(json) + ", expected a matrix of four rows of four numbers");
+  if (numbers.size() != 16) throw SceneError(place, "is " + described(json) + ", expected a matrix of four rows of four numbers");
   return numbers;
 }
 

@@ -40,8 +40,8 @@ void transform_normals(RawMesh& mesh, const Transform& to_world) {
     const Vec3f world = to_world.normal(normal);
     const Vec3f unit = world / std::max({std::abs(world.x), std::abs(world.y), std::abs(world.z)});  // no overflow in length
     if (!is_finite(normal) || !is_finite(unit)) {
-      throw SceneError(mesh.name, "the normal of vertex " + std::to_string(i) + " is " + coordinates(normal) +
-                                      ", in the world " + coordinates(world) + ", expected a finite direction");
+      throw SceneError(mesh.name, "the normal of vertex " + std::to_string(i) + " is " + coordinates(normal) + ", in the world " +
+                                      coordinates(world) + ", expected a finite direction");
     }
     normal = normalize(unit);
   }
@@ -58,9 +58,9 @@ void remove_degenerate_triangles(RawMesh& mesh, std::vector<std::string>& warnin
     ++kept;
   }
   if (kept == 0) {
-    throw SceneError(mesh.name,
-                     before == 0 ? std::string("has no triangles")
-                                 : "all " + std::to_string(before) + " triangles have no area, expected at least one that has");
+    throw SceneError(mesh.name, before == 0
+                                    ? std::string("has no triangles")
+                                    : "all " + std::to_string(before) + " triangles have no area, expected at least one that has");
   }
   mesh.indices.resize(3 * kept);
   if (kept < before) {
@@ -81,9 +81,8 @@ void orient_to_normals(RawMesh& mesh) {
 void check_uvs(const RawMesh& mesh) {
   for (std::size_t i = 0; i < mesh.uvs.size(); ++i) {
     if (!std::isfinite(mesh.uvs[i].x) || !std::isfinite(mesh.uvs[i].y)) {
-      throw SceneError(mesh.name, "the texture coordinates of vertex " + std::to_string(i) + " are " +
-                                      number_text(mesh.uvs[i].x) + ", " + number_text(mesh.uvs[i].y) +
-                                      ", expected finite numbers");
+      throw SceneError(mesh.name, "the texture coordinates of vertex " + std::to_string(i) + " are " + number_text(mesh.uvs[i].x) +
+                                      ", " + number_text(mesh.uvs[i].y) + ", expected finite numbers");
     }
   }
 }

@@ -52,9 +52,7 @@ class ObjParser {
     std::int64_t next;  // vertex with the same position, or -1
   };
 
-  [[noreturn]] void fail(const std::string& what) const {
-    throw SceneError(mesh_.name + ":" + std::to_string(line_number_), what);
-  }
+  [[noreturn]] void fail(const std::string& what) const { throw SceneError(mesh_.name + ":" + std::to_string(line_number_), what); }
 
   float read_float(std::string_view& line) const {
     const std::string_view word = take_word(line);
@@ -75,8 +73,8 @@ class ObjParser {
     if (!value) fail("the face has " + in_quotes(text) + ", expected the index of a " + noun);
     const auto size = static_cast<std::int64_t>(count);
     if (*value == 0 || *value > size || *value < -size) {
-      fail("the face refers to " + std::string(noun) + " " + std::to_string(*value) + ", expected 1 to " +
-           std::to_string(size) + " or -1 to -" + std::to_string(size));
+      fail("the face refers to " + std::string(noun) + " " + std::to_string(*value) + ", expected 1 to " + std::to_string(size) +
+           " or -1 to -" + std::to_string(size));
     }
     return *value > 0 ? *value - 1 : size + *value;
   }
@@ -98,8 +96,7 @@ class ObjParser {
   std::uint32_t vertex(std::size_t position, std::int64_t uv, std::int64_t normal) {
     first_vertex_.resize(positions_.size(), -1);
     std::int64_t found = first_vertex_[position];
-    while (found >= 0 && !(corners_[at(found)].uv == uv && corners_[at(found)].normal == normal))
-      found = corners_[at(found)].next;
+    while (found >= 0 && !(corners_[at(found)].uv == uv && corners_[at(found)].normal == normal)) found = corners_[at(found)].next;
     if (found >= 0) return static_cast<std::uint32_t>(found);
     if (corners_.size() > UINT32_MAX - 1) fail("the mesh has more vertices than 32 bits can count");
 

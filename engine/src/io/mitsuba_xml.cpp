@@ -152,8 +152,8 @@ class XmlSceneReader {
       attributes.fail("filename = " + in_quotes(filename) + " includes itself, directly or through other files");
     }
     if (open_files_.size() > kMaxIncludeDepth) {
-      attributes.fail("filename = " + in_quotes(filename) + " is included through more than " +
-                      std::to_string(kMaxIncludeDepth) + " files");
+      attributes.fail("filename = " + in_quotes(filename) + " is included through more than " + std::to_string(kMaxIncludeDepth) +
+                      " files");
     }
     if (++includes_ > kMaxIncludes)
       attributes.fail("is one of more than " + std::to_string(kMaxIncludes) + " includes of this scene");

@@ -18,9 +18,7 @@ struct DescribeValue {
   std::string operator()(const std::string& value) const { return in_quotes(value); }
   std::string operator()(Rgb v) const { return number_text(v.r) + ", " + number_text(v.g) + ", " + number_text(v.b); }
   std::string operator()(UniformSpectrum value) const { return number_text(value.value); }
-  std::string operator()(const Triple& v) const {
-    return number_text(v[0]) + ", " + number_text(v[1]) + ", " + number_text(v[2]);
-  }
+  std::string operator()(const Triple& v) const { return number_text(v[0]) + ", " + number_text(v[1]) + ", " + number_text(v[2]); }
   std::string operator()(const Transform&) const { return "a transform"; }
 };
 

@@ -9,8 +9,7 @@ namespace fluxfarm {
 
 Rgb read_area_emitter(const PluginNode& emitter, const PluginNode& shape) {
   if (emitter.type != "area") {
-    throw SceneError(emitter.place,
-                     title(emitter) + " stands inside a " + title(shape) + ", expected it directly in the scene");
+    throw SceneError(emitter.place, title(emitter) + " stands inside a " + title(shape) + ", expected it directly in the scene");
   }
   check_no_children(emitter);
   Properties properties(emitter);

@@ -80,8 +80,7 @@ Roughness read_roughness(Properties& properties, bool anisotropic) {
   if (anisotropic) {
     if (properties.has("alpha_u") != properties.has("alpha_v"))
       properties.fail("alpha", "alpha_u and alpha_v must be given together");
-    if (properties.has("alpha") && properties.has("alpha_u"))
-      properties.fail("alpha", "but alpha_u and alpha_v are given, too");
+    if (properties.has("alpha") && properties.has("alpha_u")) properties.fail("alpha", "but alpha_u and alpha_v are given, too");
     result.alpha_u = properties.number("alpha_u", alpha, kUnitInterval);
     result.alpha_v = properties.number("alpha_v", alpha, kUnitInterval);
   }
@@ -117,8 +116,7 @@ MaterialDescription read_simple(const PluginNode& node) {
 }
 
 bool transmits(const MaterialDescription& material) {
-  return std::holds_alternative<DielectricDescription>(material) ||
-         std::holds_alternative<RoughDielectricDescription>(material);
+  return std::holds_alternative<DielectricDescription>(material) || std::holds_alternative<RoughDielectricDescription>(material);
 }
 
 }  // namespace

@@ -56,13 +56,11 @@ SceneDescription build(const PluginNode& root, const Bundle& bundle) {
       case PluginKind::kBsdf: break;  // read when a shape refers to it
       case PluginKind::kSensor:
         if (sensor)
-          scene.warnings.push_back(child.place + ": the scene has more than one sensor; the one at " + sensor->place +
-                                   " is used");
+          scene.warnings.push_back(child.place + ": the scene has more than one sensor; the one at " + sensor->place + " is used");
         if (!sensor) sensor = &child;
         break;
       case PluginKind::kIntegrator:
-        if (integrator)
-          throw SceneError(child.place, "the scene has a second integrator; the first is at " + integrator->place);
+        if (integrator) throw SceneError(child.place, "the scene has a second integrator; the first is at " + integrator->place);
         integrator = &child;
         break;
       default: fail_nested(root, child, "integrator, sensor, bsdf, shape and emitter");

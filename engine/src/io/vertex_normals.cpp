@@ -39,10 +39,8 @@ void fill_missing_normals(const std::vector<Vec3f>& positions, const std::vector
     const double n_length = length_of(n);
     for (double& axis : n) axis /= n_length;
     for (std::size_t corner = 0; corner < 3; ++corner) {
-      const std::uint32_t i = indices[t + corner], next = indices[t + (corner + 1) % 3],
-                          previous = indices[t + (corner + 2) % 3];
-      const double angle =
-          angle_between(difference(positions[next], positions[i]), difference(positions[previous], positions[i]));
+      const std::uint32_t i = indices[t + corner], next = indices[t + (corner + 1) % 3], previous = indices[t + (corner + 2) % 3];
+      const double angle = angle_between(difference(positions[next], positions[i]), difference(positions[previous], positions[i]));
       for (std::size_t axis = 0; axis < 3; ++axis) sums[i][axis] += angle * n[axis];
       last_face[i] = n;
     }
@@ -52,8 +50,7 @@ void fill_missing_normals(const std::vector<Vec3f>& positions, const std::vector
     const bool vanishes = length_of(sums[i]) < 1e-9;  // of angles that add up to radians
     const Vector& n = vanishes ? last_face[i] : sums[i];
     const double n_length = length_of(n);
-    normals[i] = {static_cast<float>(n[0] / n_length), static_cast<float>(n[1] / n_length),
-                  static_cast<float>(n[2] / n_length)};
+    normals[i] = {static_cast<float>(n[0] / n_length), static_cast<float>(n[1] / n_length), static_cast<float>(n[2] / n_length)};
   }
 }
 

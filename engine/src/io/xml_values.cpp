@@ -37,8 +37,7 @@ double XmlAttributes::number(const std::string& name) const {
 
 Triple XmlAttributes::triple(const std::string& name) const {
   const auto values = parse_numbers(text(name));
-  if (!values || values->size() != 3 ||
-      !std::all_of(values->begin(), values->end(), [](double v) { return std::isfinite(v); })) {
+  if (!values || values->size() != 3 || !std::all_of(values->begin(), values->end(), [](double v) { return std::isfinite(v); })) {
     fail(name + " = " + in_quotes(text(name)) + ", expected three finite numbers");
   }
   return {(*values)[0], (*values)[1], (*values)[2]};
@@ -63,8 +62,7 @@ Triple one_or_three(const XmlAttributes& attributes, const char* expected) {
   const bool finite = values && std::all_of(values->begin(), values->end(), [](double v) { return std::isfinite(v); });
   if (!finite || (values->size() != 1 && values->size() != 3))
     attributes.fail("value = " + in_quotes(text) + ", expected " + expected);
-  return values->size() == 1 ? Triple{(*values)[0], (*values)[0], (*values)[0]}
-                             : Triple{(*values)[0], (*values)[1], (*values)[2]};
+  return values->size() == 1 ? Triple{(*values)[0], (*values)[0], (*values)[0]} : Triple{(*values)[0], (*values)[1], (*values)[2]};
 }
 
 // Either `value` or the attributes x, y and z; a missing one of these is `otherwise`, or an error if that is absent.

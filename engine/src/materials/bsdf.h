@@ -15,10 +15,10 @@ namespace fluxfarm {
 
 struct BsdfSample {
   Vec3f wi;
-  Rgb weight;           // f |cos wi| / pdf for a continuous lobe; reflectance or transmittance over its probability for a delta
-  float pdf = 0;        // solid angle, sr^-1; 0 for a delta direction
-  bool delta = false;   // wi has probability mass: next-event estimation cannot find it
-  float eta = 1;        // index of refraction on the side of wi over the one on the side of wo; 1 for reflection
+  Rgb weight;          // f |cos wi| / pdf for a continuous lobe; reflectance or transmittance over its probability for a delta
+  float pdf = 0;       // solid angle, sr^-1; 0 for a delta direction
+  bool delta = false;  // wi has probability mass: next-event estimation cannot find it
+  float eta = 1;       // index of refraction on the side of wi over the one on the side of wo; 1 for reflection
 };
 
 struct BsdfValue {

@@ -45,10 +45,7 @@ Transform Transform::look_at(const Triple& origin, const Triple& target, const T
   const Triple z = normalized(subtract(target, origin));
   const Triple x = normalized(cross(up, z));
   const Triple y = cross(z, x);
-  return Transform({{{x[0], y[0], z[0], origin[0]},
-                     {x[1], y[1], z[1], origin[1]},
-                     {x[2], y[2], z[2], origin[2]},
-                     {0, 0, 0, 1}}});
+  return Transform({{{x[0], y[0], z[0], origin[0]}, {x[1], y[1], z[1], origin[1]}, {x[2], y[2], z[2], origin[2]}, {0, 0, 0, 1}}});
 }
 
 Transform Transform::operator*(const Transform& first) const {
@@ -62,9 +59,7 @@ Transform Transform::operator*(const Transform& first) const {
 }
 
 Vec3f Transform::point(Vec3f p) const {
-  const auto row = [&](int i) {
-    return static_cast<float>(m_[i][0] * p.x + m_[i][1] * p.y + m_[i][2] * p.z + m_[i][3]);
-  };
+  const auto row = [&](int i) { return static_cast<float>(m_[i][0] * p.x + m_[i][1] * p.y + m_[i][2] * p.z + m_[i][3]); };
   return {row(0), row(1), row(2)};
 }
 

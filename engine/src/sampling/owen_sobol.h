@@ -49,7 +49,9 @@ constexpr std::uint32_t sobol_second_digits(std::uint32_t index) {
 }
 
 // The 24 leading bits of a binary fraction as a float in [0, 1).
-constexpr float to_unit_float(std::uint32_t fraction) { return static_cast<float>(static_cast<std::int32_t>(fraction >> 8)) * 0x1p-24f; }
+constexpr float to_unit_float(std::uint32_t fraction) {
+  return static_cast<float>(static_cast<std::int32_t>(fraction >> 8)) * 0x1p-24f;
+}
 
 // The two points below take their index with its bits reversed, as one index serves many dimensions; the seeds pick the shuffle of
 // the index and the scramble of each coordinate.

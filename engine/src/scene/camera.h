@@ -19,8 +19,8 @@ class Camera {
 
  private:
   Vec3f origin_;
-  Vec3f axis_;         // unit, the view direction
-  Vec3f top_left_;     // from the origin to the film's corner on the plane at distance 1
+  Vec3f axis_;             // unit, the view direction
+  Vec3f top_left_;         // from the origin to the film's corner on the plane at distance 1
   Vec3f step_x_, step_y_;  // one pixel on that plane
   float near_clip_, far_clip_;
 };

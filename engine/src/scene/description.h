@@ -48,8 +48,8 @@ struct SphereDescription {
 struct ShapeDescription {
   std::string name;  // id of the shape in the scene file, or its place there; for messages
   std::variant<MeshDescription, RectangleDescription, DiskDescription, SphereDescription> geometry;
-  bool flip_normals = false;  // swaps front and back; the compiled scene applies it, the reader does not
-  int material = 0;           // index into SceneDescription::materials
+  bool flip_normals = false;            // swaps front and back; the compiled scene applies it, the reader does not
+  int material = 0;                     // index into SceneDescription::materials
   std::optional<Rgb> emitted_radiance;  // area emitter on the front side
 };
 

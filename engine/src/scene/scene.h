@@ -55,7 +55,6 @@ class Scene {
   const std::vector<std::string>& warnings() const { return warnings_; }
 
  private:
-
   FilmDescription film_;
   MethodDescription method_;
   PixelFilter pixel_filter_;

@@ -5,7 +5,7 @@
 
 namespace fluxfarm {
 
-// Version, compiler and instruction set of the build; two engines with the same string give the same bits.
+// Version, sources, compiler and instruction set of the build.
 std::string engine_build();
 std::string engine_version();
 std::string compiler();

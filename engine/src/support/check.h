@@ -5,10 +5,10 @@
 #include <cstdlib>
 
 // Always on, also in release builds: keep it out of inner loops.
-#define FLUXFARM_CHECK(condition, message)                                                                            \
-  do {                                                                                                                \
-    if (!(condition)) {                                                                                               \
-      std::fprintf(stderr, "%s:%d: broken invariant: %s (%s)\n", __FILE__, __LINE__, #condition, message);            \
-      std::abort();                                                                                                   \
-    }                                                                                                                 \
+#define FLUXFARM_CHECK(condition, message)                                                                 \
+  do {                                                                                                     \
+    if (!(condition)) {                                                                                    \
+      std::fprintf(stderr, "%s:%d: broken invariant: %s (%s)\n", __FILE__, __LINE__, #condition, message); \
+      std::abort();                                                                                        \
+    }                                                                                                      \
   } while (false)

@@ -33,27 +33,36 @@ std::vector<std::filesystem::path> decode_paths(const Files& files) {
   return paths;
 }
 
-template <typename Message>
-SceneKey decode_key(const Message& message) {
-  return {message.scene_digest(), message.integrator(), static_cast<int>(message.width()), static_cast<int>(message.height())};
+LoadSceneRequest decode(const v1::LoadScene& m) {
+  return {m.scene_key(), m.folder(), m.entry(), static_cast<int>(m.width()), static_cast<int>(m.height()), m.integrator()};
 }
 
-LoadSceneRequest decode(const v1::LoadScene& m) { return {decode_key(m), m.folder(), m.entry()}; }
-
 RenderTilesRequest decode(const v1::RenderTiles& m) {
-  RenderTilesRequest request{decode_key(m), m.seed(), {m.samples().begin(), m.samples().end()}, {}};
+  RenderTilesRequest request{m.scene_key(), m.seed(), {m.samples().begin(), m.samples().end()}, {}};
   for (const v1::PixelRect& tile : m.tiles()) request.tiles.push_back(decode(tile));
   return request;
 }
 
 MergePassRequest decode(const v1::MergePass& m) {
-  return {static_cast<int>(m.width()), static_cast<int>(m.height()), decode(m.crop()), m.film_in(), decode_paths(m.tiles()),
-          m.film_out(),                m.exr_out(),                  m.png_out(),      decode(m.info())};
+  return {static_cast<int>(m.width()),
+          static_cast<int>(m.height()),
+          decode(m.crop()),
+          m.film_in(),
+          decode_paths(m.tiles()),
+          m.film_out(),
+          m.exr_out(),
+          m.png_out(),
+          decode(m.info())};
 }
 
 WriteTileRequest decode(const v1::WriteTile& m) {
-  return {static_cast<int>(m.width()), static_cast<int>(m.height()), decode(m.rect()), m.film_in(),
-          decode_paths(m.tiles()),     m.exr_out(),                  decode(m.info())};
+  return {static_cast<int>(m.width()),
+          static_cast<int>(m.height()),
+          decode(m.rect()),
+          m.film_in(),
+          decode_paths(m.tiles()),
+          m.exr_out(),
+          decode(m.info())};
 }
 
 void encode(const HelloReply& r, v1::Reply& out) {
@@ -164,8 +173,12 @@ std::string encode_tile_sums(const TileSums& sums) {
 TileSums decode_tile_sums(std::string_view bytes, const std::string& where) {
   v1::TileSums message;
   if (!message.ParseFromArray(bytes.data(), static_cast<int>(bytes.size()))) throw ResourceError(where + ": not a tile's sums");
-  TileSums sums{decode(message.rect()),         {message.samples().begin(), message.samples().end()}, message.seed(),
-                floats_of(message.radiance()), floats_of(message.features()),                        message.non_finite_samples()};
+  TileSums sums{decode(message.rect()),
+                {message.samples().begin(), message.samples().end()},
+                message.seed(),
+                floats_of(message.radiance()),
+                floats_of(message.features()),
+                message.non_finite_samples()};
   if (sums.rect.empty() || sums.samples.begin >= sums.samples.end || sums.radiance.size() != sums.radiance_size() ||
       sums.features.size() != sums.features_size()) {
     throw ResourceError(where + ": the tile's sums contradict themselves");

@@ -35,7 +35,8 @@ std::optional<std::string> FrameSocket::read() {
 
 bool FrameSocket::write(const std::string& bytes) {
   const auto size = static_cast<std::uint32_t>(bytes.size());
-  std::string frame{static_cast<char>(size), static_cast<char>(size >> 8), static_cast<char>(size >> 16), static_cast<char>(size >> 24)};
+  std::string frame{static_cast<char>(size), static_cast<char>(size >> 8), static_cast<char>(size >> 16),
+                    static_cast<char>(size >> 24)};
   frame += bytes;
   const std::lock_guard lock(write_mutex_);
   const char* data = frame.data();

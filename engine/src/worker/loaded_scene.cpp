@@ -11,12 +11,12 @@ std::shared_ptr<const LoadedScene> load_scene(const LoadSceneRequest& request, i
   const auto start = std::chrono::steady_clock::now();
   SceneDescription description = read_scene(request.folder, request.entry, {});
   FilmDescription& film = description.film;
-  if (request.key.width > 0 && request.key.height > 0 && (request.key.width != film.width || request.key.height != film.height)) {
+  if (request.width > 0 && request.height > 0 && (request.width != film.width || request.height != film.height)) {
     // Another size makes another frame: the file's crop has no meaning in it.
-    film = {request.key.width, request.key.height, 0, 0, 0, 0, film.filter};
+    film = {request.width, request.height, 0, 0, 0, 0, film.filter};
   }
   auto loaded = std::make_shared<LoadedScene>(LoadedScene{{}, Scene(description, threads), nullptr});
-  loaded->integrator = make_integrator(request.key.integrator, loaded->scene);
+  loaded->integrator = make_integrator(request.integrator, loaded->scene);
 
   const PixelRect full{0, 0, film.width, film.height};
   SceneLoadedReply& info = loaded->info;
@@ -31,21 +31,26 @@ std::shared_ptr<const LoadedScene> load_scene(const LoadSceneRequest& request, i
   return loaded;
 }
 
-std::shared_ptr<const LoadedScene> SceneStore::find(const SceneKey& key) {
+SceneFuture SceneStore::find(const SceneKey& key) {
   const std::lock_guard lock(mutex_);
   for (auto entry = entries_.begin(); entry != entries_.end(); ++entry) {
     if (entry->key != key) continue;
     entries_.splice(entries_.begin(), entries_, entry);
     return entries_.front().scene;
   }
-  return nullptr;
+  return {};
 }
 
-void SceneStore::keep(const SceneKey& key, std::shared_ptr<const LoadedScene> scene) {
+void SceneStore::keep(const SceneKey& key, SceneFuture scene) {
   const std::lock_guard lock(mutex_);
   entries_.remove_if([&](const Entry& entry) { return entry.key == key; });
   entries_.push_front({key, std::move(scene)});
   if (entries_.size() > capacity_) entries_.pop_back();
+}
+
+void SceneStore::forget(const SceneKey& key) {
+  const std::lock_guard lock(mutex_);
+  entries_.remove_if([&](const Entry& entry) { return entry.key == key; });
 }
 
 }  // namespace fluxfarm

@@ -1,6 +1,7 @@
 // A scene ready to render, with its method, and the small store of them that a worker keeps between requests.
 #pragma once
 
+#include <future>
 #include <list>
 #include <memory>
 #include <mutex>
@@ -20,19 +21,23 @@ struct LoadedScene {
 // Reads, compiles and prepares. Throws SceneError, SettingError or ResourceError.
 std::shared_ptr<const LoadedScene> load_scene(const LoadSceneRequest& request, int threads);
 
+// A scene that is there or on its way; get() waits for it and throws what loading it threw.
+using SceneFuture = std::shared_future<std::shared_ptr<const LoadedScene>>;
+
 // Keeps the most recently used scenes. Safe to use from many threads.
 class SceneStore {
  public:
   explicit SceneStore(std::size_t capacity) : capacity_(capacity) {}
 
-  // nullptr when it is not kept.
-  std::shared_ptr<const LoadedScene> find(const SceneKey& key);
-  void keep(const SceneKey& key, std::shared_ptr<const LoadedScene> scene);
+  // Not valid() when it is neither kept nor on its way.
+  SceneFuture find(const SceneKey& key);
+  void keep(const SceneKey& key, SceneFuture scene);
+  void forget(const SceneKey& key);
 
  private:
   struct Entry {
     SceneKey key;
-    std::shared_ptr<const LoadedScene> scene;
+    SceneFuture scene;
   };
   std::mutex mutex_;
   std::size_t capacity_;

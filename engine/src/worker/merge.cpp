@@ -5,8 +5,8 @@
 
 #include "io/exr.h"
 #include "io/png.h"
-#include "support/build_info.h"
 #include "support/error.h"
+#include "worker/build_id.h"
 #include "worker/codec.h"
 
 namespace fluxfarm {
@@ -20,7 +20,7 @@ TileSums read_tile(const std::filesystem::path& path) {
 }
 
 ImageInfo with_build(ImageInfo info) {
-  info.engine_build = engine_build();
+  info.engine_build = engine_build_id();
   return info;
 }
 

@@ -17,16 +17,14 @@ inline constexpr std::uint32_t kProtocolVersion = 1;
 
 // ---------------------------------------------------------------- requests
 
-// A scene with its settings, as it is kept between requests.
-struct SceneKey {
-  std::string digest, integrator;
-  int width = 0, height = 0;  // 0: as the scene says
-  auto operator<=>(const SceneKey&) const = default;
-};
+// Names a scene with its settings, as it is kept between requests.
+using SceneKey = std::string;
 
 struct LoadSceneRequest {
   SceneKey key;
   std::filesystem::path folder, entry;
+  int width = 0, height = 0;  // 0: as the scene says
+  std::string integrator;     // "": as the scene says
 };
 
 struct RenderTilesRequest {

@@ -5,7 +5,9 @@
 namespace fluxfarm {
 namespace {
 
-nlohmann::json part(const char* name, bool on, const std::string& reason) { return {{"part", name}, {"on", on}, {"reason", reason}}; }
+nlohmann::json part(const char* name, bool on, const std::string& reason) {
+  return {{"part", name}, {"on", on}, {"reason", reason}};
+}
 
 std::string count(std::size_t number, const char* noun) { return std::to_string(number) + " " + noun + (number == 1 ? "" : "s"); }
 
@@ -30,7 +32,8 @@ std::string plan_json(const Scene& scene) {
         part("environment", census.environment, census.environment ? "a constant environment" : "no environment"),
         part("tangent frames", census.anisotropic_materials,
              census.anisotropic_materials ? "a material with two roughnesses" : "no anisotropic material"),
-        part("shading normals", census.shading_normals, census.shading_normals ? "a mesh with normals" : "all surfaces flat or exact")}}};
+        part("shading normals", census.shading_normals,
+             census.shading_normals ? "a mesh with normals" : "all surfaces flat or exact")}}};
   return plan.dump();
 }
 

@@ -10,8 +10,8 @@
 #include <new>
 #include <thread>
 
-#include "support/build_info.h"
 #include "support/error.h"
+#include "worker/build_id.h"
 #include "worker/codec.h"
 #include "worker/frame_socket.h"
 #include "worker/job_queue.h"
@@ -60,7 +60,7 @@ class Worker {
   Worker(int fd, int threads) : socket_(fd), threads_(threads), scenes_(kKeptScenes) {}
 
   int run() {
-    reply(0, HelloReply{engine_build(), threads_});
+    reply(0, HelloReply{engine_build_id(), threads_});
     for (int i = 0; i < threads_; ++i) {
       std::thread([this] {
         prepare_render_thread();
@@ -94,34 +94,45 @@ class Worker {
   }
 
   void handle(std::uint64_t id, LoadSceneRequest request) {
-    start(id, [this, request = std::move(request)](Running&) -> ReplyBody {
-      std::shared_ptr<const LoadedScene> loaded = scenes_.find(request.key);
-      if (!loaded) {
-        loaded = load_scene(request, threads_);
-        scenes_.keep(request.key, loaded);
+    // Known from now on, so that tiles may be asked for before it is loaded: they wait for it. Loading is urgent, hence begun
+    // before any of them.
+    SceneFuture scene = scenes_.find(request.key);
+    std::shared_ptr<std::packaged_task<std::shared_ptr<const LoadedScene>()>> loading;
+    if (!scene.valid()) {
+      loading = std::make_shared<std::packaged_task<std::shared_ptr<const LoadedScene>()>>(
+          [this, request] { return load_scene(request, threads_); });
+      scene = loading->get_future().share();
+      scenes_.keep(request.key, scene);
+    }
+    start(id, [this, scene, loading, key = request.key]() -> ReplyBody {
+      if (loading) (*loading)();
+      try {
+        return scene.get()->info;
+      } catch (...) {
+        scenes_.forget(key);  // asked for again, it is tried again
+        throw;
       }
-      return loaded->info;
     });
   }
   void handle(std::uint64_t id, MergePassRequest request) {
-    start(id, [request = std::move(request)](Running&) -> ReplyBody { return PassMergedReply{merge_pass(request)}; });
+    start(id, [request = std::move(request)]() -> ReplyBody { return PassMergedReply{merge_pass(request)}; });
   }
   void handle(std::uint64_t id, WriteTileRequest request) {
-    start(id, [request = std::move(request)](Running&) -> ReplyBody {
+    start(id, [request = std::move(request)]() -> ReplyBody {
       write_tile(request);
       return TileWrittenReply{};
     });
   }
 
   // One job that answers with one reply.
-  void start(std::uint64_t id, std::function<ReplyBody(Running&)> work) {
+  void start(std::uint64_t id, std::function<ReplyBody()> work) {
     const std::shared_ptr<Running> running = begin(id);
     jobs_.push(
         [this, id, running, work = std::move(work)] {
           ReplyBody body;
           try {
             if (running->cancelled) throw CancelledError();
-            body = work(*running);
+            body = work();
           } catch (...) {
             body = failure_of(std::current_exception());
           }
@@ -133,9 +144,9 @@ class Worker {
 
   void handle(std::uint64_t id, RenderTilesRequest body) {
     const auto request = std::make_shared<const RenderTilesRequest>(std::move(body));
-    const std::shared_ptr<const LoadedScene> loaded = scenes_.find(request->key);
-    if (!loaded) {
-      reply(id, FailureReply{FailureKind::kResource, "scene " + request->key.digest + " is not loaded here, LoadScene first"});
+    const SceneFuture scene = scenes_.find(request->key);
+    if (!scene.valid()) {
+      reply(id, FailureReply{FailureKind::kResource, "scene " + request->key + " is not loaded here, LoadScene first"});
       return;
     }
     if (request->tiles.empty()) {
@@ -145,13 +156,14 @@ class Worker {
     const std::shared_ptr<Running> running = begin(id);
     running->tiles_left = request->tiles.size();
     for (std::uint32_t tile = 0; tile < request->tiles.size(); ++tile) {
-      jobs_.push([this, id, request, loaded, running, tile] { render(id, *request, *loaded, *running, tile); }, false);
+      jobs_.push([this, id, request, scene, running, tile] { render(id, *request, scene, *running, tile); }, false);
     }
   }
 
-  void render(std::uint64_t id, const RenderTilesRequest& request, const LoadedScene& loaded, Running& running, std::uint32_t tile) {
+  void render(std::uint64_t id, const RenderTilesRequest& request, const SceneFuture& scene, Running& running, std::uint32_t tile) {
     try {
       if (running.cancelled) throw CancelledError();
+      const LoadedScene& loaded = *scene.get();
       const Clock::time_point start = Clock::now();
       RayQueries queries(loaded.scene.accelerator());
       const TileSums sums =

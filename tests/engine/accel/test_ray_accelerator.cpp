@@ -88,7 +88,9 @@ TEST(OffsetPoint, KeepsRaysOffTheirOwnSurface) {
   std::uniform_real_distribution<float> uniform(-1, 1);
   int met_again = 0, met_without_offset = 0;
   for (const float scale : {1e-3f, 1.0f, 1e4f}) {
-    const TriangleMesh mesh({{scale * Vec3f{-1, 0.3f, -1}, scale * Vec3f{1, 0.1f, -1.2f}, scale * Vec3f{0, -0.2f, 1}}, {}, {}, {0, 2, 1}}, false, false);
+    const TriangleMesh mesh(
+        {{scale * Vec3f{-1, 0.3f, -1}, scale * Vec3f{1, 0.1f, -1.2f}, scale * Vec3f{0, -0.2f, 1}}, {}, {}, {0, 2, 1}}, false,
+        false);
     RayAccelerator accelerator(1);
     accelerator.add(mesh);
     accelerator.build();

@@ -32,7 +32,8 @@ std::vector<LightCase> cases() {
   add("disk", std::make_unique<Disk>(Vec3f{0.3f, 0, 1}, Vec3f{0, 0, -1}, Vec3f{1, 0, 0}, 0.8f), Vec3f{0, 0, 0});
   add("rectangle near", std::make_unique<Rectangle>(Vec3f{-0.4f, -1, 0.5f}, Vec3f{1, 0, 0}, Vec3f{0, 2, 0}, true), Vec3f{0, 0, 0});
   add("rectangle far", std::make_unique<Rectangle>(Vec3f{-0.4f, -1, 3}, Vec3f{1, 0, 0}, Vec3f{0, 2, 0}, true), Vec3f{0, 0, 0});
-  add("parallelogram", std::make_unique<Rectangle>(Vec3f{-0.4f, -1, 1}, Vec3f{1, 0, 0.2f}, Vec3f{0.7f, 2, 0}, true), Vec3f{0, 0, 0});
+  add("parallelogram", std::make_unique<Rectangle>(Vec3f{-0.4f, -1, 1}, Vec3f{1, 0, 0.2f}, Vec3f{0.7f, 2, 0}, true),
+      Vec3f{0, 0, 0});
   TriangleMesh::Data mesh{{{-1, -1, 1}, {1, -1, 1.3f}, {0, 1, 0.8f}, {1.5f, 1, 1}}, {}, {}, {0, 2, 1, 1, 2, 3}};
   add("mesh", std::make_unique<TriangleMesh>(mesh, false, true), Vec3f{0, 0, 0});
   return result;
@@ -109,7 +110,8 @@ double sampling_p_value(const LightCase& c, double scale) {
     if (!accelerator.intersect(ray, hit)) return 0.0;
     const SurfacePoint point = c.shape->surface_point(ray, hit);
     // Twin: brighter towards one side.
-    return static_cast<double>(c.shape->pdf(c.reference, point, hit.primitive, wi, hit.t)) * (1 + scale * static_cast<double>(wi.x));
+    return static_cast<double>(c.shape->pdf(c.reference, point, hit.primitive, wi, hit.t)) *
+           (1 + scale * static_cast<double>(wi.x));
   };
   const auto sample = [&](float, Vec2f u) -> std::optional<Vec3f> {
     const auto s = c.shape->sample(c.reference, u);

@@ -20,7 +20,8 @@ void expect_answer(const Measurement& m, double expected) {
 }
 
 void expect_rejected(const Measurement& m, double wrong) {
-  EXPECT_GT(m.z(wrong), kZ) << "the test has no teeth: measured " << m.mean << " +- " << m.standard_error << " passes for " << wrong;
+  EXPECT_GT(m.z(wrong), kZ) << "the test has no teeth: measured " << m.mean << " +- " << m.standard_error << " passes for "
+                            << wrong;
 }
 
 constexpr float kRho = 0.8f;
@@ -45,7 +46,8 @@ TEST(CatalogueD1, PointLightOverPlane) {
 
 // D2: form factor of a parallel rectangle, centred 1 x 1 at distance 1, and a corner above the point.
 TEST(CatalogueD2, ParallelRectangle) {
-  for (const auto& [a, b, d, offset, f] : {std::tuple{1.0f, 1.0f, 1.0f, 0.0f, 0.2394565}, std::tuple{1.0f, 0.5f, 0.7f, 0.5f, 0.1302817}}) {
+  for (const auto& [a, b, d, offset, f] :
+       {std::tuple{1.0f, 1.0f, 1.0f, 0.0f, 0.2394565}, std::tuple{1.0f, 0.5f, 0.7f, 0.5f, 0.1302817}}) {
     SceneBuilder scene;
     scene.floor(0, 20, scene.diffuse(kRho));
     scene.lamp_down(offset * a, d, offset * b, a, b, scene.diffuse(0), 2);
@@ -121,7 +123,8 @@ SceneBuilder furnace(float rho) {
   const int wall = scene.diffuse(rho);
   scene.shape(SphereDescription{{0, 0, 0}, 3}, wall, 1, true);
   scene.shape(SphereDescription{{0.5f, -1, 0.4f}, 0.7f}, wall, 1);
-  scene.shape(cube(Transform::translate(-1, 0.4, 0.5) * Transform::rotate(0.3, 1, 0.2, 70) * Transform::scale(0.5, 0.9, 0.6)), wall, 1);
+  scene.shape(cube(Transform::translate(-1, 0.4, 0.5) * Transform::rotate(0.3, 1, 0.2, 70) * Transform::scale(0.5, 0.9, 0.6)), wall,
+              1);
   scene.look({1, 1, -1}, {0.5, -0.31, 0.4});
   return scene;
 }
@@ -138,7 +141,7 @@ TEST(CatalogueG1, ClosedFurnace) {
 TEST(CatalogueG1, FurnaceWithFourBounces) {
   const Measurement m = measure(furnace(0.9f).max_depth(5).description(), 256);
   expect_answer(m, 4.0951);
-  expect_rejected(m, 3.439);   // one bounce less
+  expect_rejected(m, 3.439);    // one bounce less
   expect_rejected(m, 4.68559);  // one bounce more
 }
 

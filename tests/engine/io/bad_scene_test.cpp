@@ -54,9 +54,8 @@ TEST(BadScene, UnknownPluginsAreErrors) {
             "scene.xml:2: unknown plugin: medium \"homogeneous\"; no medium is supported yet");
   EXPECT_EQ(error_of([&] { folder.read_xml("<integrator type=\"volpath\"/>"); }),
             "scene.xml:2: unknown plugin: integrator \"volpath\", expected one of: path");
-  EXPECT_EQ(
-      error_of([&] { folder.read_xml("<shape type=\"diffuse\"/>"); }).find("scene.xml:2: unknown plugin: shape \"diffuse\""),
-      0u);
+  EXPECT_EQ(error_of([&] { folder.read_xml("<shape type=\"diffuse\"/>"); }).find("scene.xml:2: unknown plugin: shape \"diffuse\""),
+            0u);
   EXPECT_EQ(error_of([&] {
               folder.read_json(R"({"type": "scene", "m": {"type": "velvet"}})");
             }).find("scene.json: m: unknown plugin \"velvet\""),
@@ -121,8 +120,8 @@ TEST(BadScene, PathsThatLeaveTheFolderAreNotOpened) {
   folder.write("scene/sub/x.obj", "v 0 0 0\n");
   std::filesystem::create_symlink(folder.path() / "secret.obj", folder.path() / "scene/link.obj");
   for (const std::string name : {"../secret.obj", "sub/../../secret.obj", "/etc/passwd", "link.obj"}) {
-    folder.write("scene/scene.xml", "<scene version=\"3.0.0\"><shape type=\"obj\"><string name=\"filename\" value=\"" + name +
-                                        "\"/></shape></scene>");
+    folder.write("scene/scene.xml",
+                 "<scene version=\"3.0.0\"><shape type=\"obj\"><string name=\"filename\" value=\"" + name + "\"/></shape></scene>");
     EXPECT_EQ(error_of([&] { read_scene(folder.path() / "scene", "scene.xml"); }),
               "scene.xml:1: file \"" + name + "\" lies outside the scene's folder; copy it into the folder");
   }
@@ -157,8 +156,8 @@ TEST(BadScene, ImagesWithoutPixelsOrWithTooManyAreErrors) {
   const auto film = [&](const std::string& width, const std::string& height, const std::string& more = "") {
     return error_of([&] {
       folder.read_whole_xml(
-          "<scene version=\"3.0.0\"><sensor type=\"perspective\"><film type=\"hdrfilm\"><integer name=\"width\" value=\"" +
-          width + "\"/>\n<integer name=\"height\" value=\"" + height + "\"/>" + more + "</film></sensor></scene>");
+          "<scene version=\"3.0.0\"><sensor type=\"perspective\"><film type=\"hdrfilm\"><integer name=\"width\" value=\"" + width +
+          "\"/>\n<integer name=\"height\" value=\"" + height + "\"/>" + more + "</film></sensor></scene>");
     });
   };
   EXPECT_EQ(film("0", "5"), "scene.xml:1: film \"hdrfilm\": width = 0, expected an integer in [1, 65536]");

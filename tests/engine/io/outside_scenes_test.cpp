@@ -57,8 +57,7 @@ TEST_F(OutsideScenes, WaterCausticWithOldSpellingsLoads) {
 TEST_F(OutsideScenes, PluginsOfLaterAreNamed) {
   EXPECT_EQ(error_of([] { read("glass-of-milk"); }),
             "scene.xml:27: unknown plugin: medium \"homogeneous\"; no medium is supported yet");
-  EXPECT_EQ(error_of([] { read("veach-ajar"); }),
-            "scene.xml:29: unknown plugin: texture \"bitmap\"; no texture is supported yet");
+  EXPECT_EQ(error_of([] { read("veach-ajar"); }), "scene.xml:29: unknown plugin: texture \"bitmap\"; no texture is supported yet");
 }
 
 }  // namespace

@@ -39,8 +39,8 @@ TEST(Materials, IndicesMayBeNumbersOrNames) {
 
 TEST(Materials, ConductorsTakeAMaterialOrAnIndex) {
   const SceneFolder folder;
-  const auto gold = std::get<ConductorDescription>(
-      material(folder, "<bsdf type=\"conductor\"><string name=\"material\" value=\"Au\"/></bsdf>"));
+  const auto gold =
+      std::get<ConductorDescription>(material(folder, "<bsdf type=\"conductor\"><string name=\"material\" value=\"Au\"/></bsdf>"));
   EXPECT_FALSE(gold.perfect);
   EXPECT_NEAR(gold.eta.r, 0.143036f, 1e-6f);
   EXPECT_NEAR(gold.k.b, 1.60336f, 1e-5f);
@@ -49,10 +49,9 @@ TEST(Materials, ConductorsTakeAMaterialOrAnIndex) {
       "<bsdf type=\"conductor\"><rgb name=\"eta\" value=\"0.2 0.9 1.1\"/><rgb name=\"k\" value=\"3.9, 2.4, 2.1\"/></bsdf>"));
   EXPECT_EQ(copper.eta, Rgb(0.2f, 0.9f, 1.1f));
   EXPECT_EQ(copper.k, Rgb(3.9f, 2.4f, 2.1f));
-  EXPECT_EQ(
-      material_error(folder,
-                     "<bsdf type=\"conductor\"><string name=\"material\" value=\"Au\"/><float name=\"k\" value=\"1\"/></bsdf>"),
-      "scene.xml:2: bsdf \"conductor\": material = \"Au\", but eta or k are given, too; expected one or the other");
+  EXPECT_EQ(material_error(
+                folder, "<bsdf type=\"conductor\"><string name=\"material\" value=\"Au\"/><float name=\"k\" value=\"1\"/></bsdf>"),
+            "scene.xml:2: bsdf \"conductor\": material = \"Au\", but eta or k are given, too; expected one or the other");
 }
 
 TEST(Materials, RoughnessIsCheckedAndKeptAboveZero) {
@@ -60,8 +59,7 @@ TEST(Materials, RoughnessIsCheckedAndKeptAboveZero) {
   const auto alpha = [](const std::string& value) {
     return "<bsdf type=\"roughconductor\"><float name=\"alpha\" value=\"" + value + "\"/></bsdf>";
   };
-  EXPECT_EQ(material_error(folder, alpha("1.7")),
-            "scene.xml:2: bsdf \"roughconductor\": alpha = 1.7, expected a number in [0, 1]");
+  EXPECT_EQ(material_error(folder, alpha("1.7")), "scene.xml:2: bsdf \"roughconductor\": alpha = 1.7, expected a number in [0, 1]");
   EXPECT_FLOAT_EQ(std::get<RoughConductorDescription>(material(folder, alpha("0"))).roughness.alpha_u, 1e-4f);
   EXPECT_EQ(material_error(folder, "<bsdf type=\"roughplastic\"><string name=\"distribution\" value=\"phong\"/></bsdf>"),
             "scene.xml:2: bsdf \"roughplastic\": distribution = \"phong\", expected beckmann or ggx");
@@ -129,9 +127,9 @@ TEST(Shapes, DisksStayRoundAndRectanglesKeepAnArea) {
   };
   EXPECT_NE(error("disk", "<scale x=\"2\"/>").find("makes the disk an ellipse or a point"), std::string::npos);
   EXPECT_NE(error("rectangle", "<scale x=\"0\"/>").find("gives the rectangle no area"), std::string::npos);
-  EXPECT_EQ(folder.read_xml("<shape type=\"rectangle\"><transform name=\"to_world\"><scale z=\"0\"/></transform></shape>")
-                .shapes.size(),
-            1u);
+  EXPECT_EQ(
+      folder.read_xml("<shape type=\"rectangle\"><transform name=\"to_world\"><scale z=\"0\"/></transform></shape>").shapes.size(),
+      1u);
 }
 
 TEST(Emitters, UniformSpectraHaveTheColourOfEqualEnergyWhite) {
@@ -161,8 +159,7 @@ TEST(Emitters, StandWhereTheyBelong) {
 TEST(Cameras, MayBeMirroredButNotScaled) {
   const SceneFolder folder;
   const auto camera = [&](const std::string& inside) {
-    return folder.read_whole_xml("<scene version=\"3.0.0\"><sensor type=\"perspective\">" + inside + "</sensor></scene>")
-        .camera;
+    return folder.read_whole_xml("<scene version=\"3.0.0\"><sensor type=\"perspective\">" + inside + "</sensor></scene>").camera;
   };
   EXPECT_LT(camera("<transform name=\"to_world\"><scale x=\"-1\"/></transform>").to_world.determinant(), 0);
   EXPECT_NE(error_of([&] {

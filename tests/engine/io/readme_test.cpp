@@ -27,8 +27,7 @@ std::set<std::string> matches(const std::string& text, const std::string& patter
 TEST(Readme, NamesEveryPluginAndParameter) {
   const std::filesystem::path room = std::filesystem::path(__FILE__).parent_path() / "../../../engine/src/io";
   const std::string readme = text_of(room / "README.md");
-  std::set<std::string> names =
-      matches(text_of(room / "plugin_tree.cpp"), "\\{\"(\\w+)\", PluginKind::k(?!Unsupported|Reference)");
+  std::set<std::string> names = matches(text_of(room / "plugin_tree.cpp"), "\\{\"(\\w+)\", PluginKind::k(?!Unsupported|Reference)");
   EXPECT_GT(names.size(), 30u);
   for (const char* file : {"read_film.cpp", "read_sensor.cpp", "read_material.cpp", "read_emitter.cpp", "read_shape.cpp"}) {
     const std::string code = text_of(room / file);

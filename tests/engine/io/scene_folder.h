@@ -16,8 +16,8 @@ class SceneFolder {
  public:
   SceneFolder() {
     const auto* test = testing::UnitTest::GetInstance()->current_test_info();
-    path_ = std::filesystem::path(testing::TempDir()) /
-            ("fluxfarm-io-" + std::string(test->test_suite_name()) + "-" + test->name());
+    path_ =
+        std::filesystem::path(testing::TempDir()) / ("fluxfarm-io-" + std::string(test->test_suite_name()) + "-" + test->name());
     std::filesystem::remove_all(path_);
     std::filesystem::create_directories(path_);
   }

@@ -46,8 +46,7 @@ TEST(SceneForms, XmlAndJsonOfOneSceneGiveTheSameDescription) {
   folder.write("models/a mesh.obj", kObj);
   const std::string from_xml = describe(folder.read_whole_xml(kXml));
   EXPECT_EQ(from_xml, describe(folder.read_json(kJson)));
-  EXPECT_NE(from_xml.find("fov 3 35 clip 0.01 10000\nfilm 320 200 crop 10 0 100 200 filter 1 1"), std::string::npos)
-      << from_xml;
+  EXPECT_NE(from_xml.find("fov 3 35 clip 0.01 10000\nfilm 320 200 crop 10 0 100 200 filter 1 1"), std::string::npos) << from_xml;
 }
 
 TEST(SceneForms, StepsOfATransformApplyInTheOrderOfTheFile) {
@@ -79,8 +78,7 @@ TEST(SceneForms, DefaultsAreMitsubas) {
 
 TEST(SceneForms, DefaultGivesWayToOverride) {
   const SceneFolder folder;
-  const std::string body =
-      "<default name=\"r\" value=\"2\"/><shape type=\"sphere\"><float name=\"radius\" value=\"$r\"/></shape>";
+  const std::string body = "<default name=\"r\" value=\"2\"/><shape type=\"sphere\"><float name=\"radius\" value=\"$r\"/></shape>";
   EXPECT_FLOAT_EQ(std::get<SphereDescription>(folder.read_xml(body).shapes[0].geometry).radius, 2);
   EXPECT_FLOAT_EQ(std::get<SphereDescription>(folder.read_xml(body, {{"r", "3"}}).shapes[0].geometry).radius, 3);
 }
@@ -102,8 +100,7 @@ TEST(SceneForms, UnsetNameIsAnErrorWithItsPlace) {
 
 TEST(SceneForms, IncludedFilesAreReadWithTheirOwnPlaces) {
   const SceneFolder folder;
-  folder.write("parts/shapes.xml",
-               "<scene version=\"3.0.0\">\n<shape type=\"sphere\" id=\"s\"><ref id=\"late\"/></shape></scene>");
+  folder.write("parts/shapes.xml", "<scene version=\"3.0.0\">\n<shape type=\"sphere\" id=\"s\"><ref id=\"late\"/></shape></scene>");
   folder.write("parts/material.xml",
                "<bsdf version=\"3.0.0\" type=\"diffuse\" id=\"late\">\n<rgb name=\"reflectence\" value=\"1\"/></bsdf>");
   const std::string body = "<include filename=\"parts/shapes.xml\"/><include filename=\"parts/material.xml\"/>";

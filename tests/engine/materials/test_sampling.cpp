@@ -15,7 +15,9 @@ constexpr float kCosines[] = {1.0f, 0.6f, 0.08f, -0.5f};
 
 enum class Part { kAll, kReflected, kTransmitted };
 
-bool in_part(Part part, const Vec3f& wo, const Vec3f& wi) { return part == Part::kAll || (wo.z * wi.z > 0) == (part == Part::kReflected); }
+bool in_part(Part part, const Vec3f& wo, const Vec3f& wi) {
+  return part == Part::kAll || (wo.z * wi.z > 0) == (part == Part::kReflected);
+}
 
 // Where a narrow lobe sits, and how narrow: the cells are gathered there.
 SphereChart chart_for(const MaterialCase& c, Vec3f wo, Part part) {

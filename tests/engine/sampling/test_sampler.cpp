@@ -43,7 +43,8 @@ TEST(Sampler, EveryPrefixOfAPowerOfTwoIsAZeroTwoNet) {
 TEST(Sampler, TwinWithIndependentPointsIsNoNet) {
   std::vector<Vec2f> points;
   for (std::uint64_t i = 0; i < 64; ++i) {
-    points.push_back({to_unit_float(static_cast<std::uint32_t>(hash_words(i, 1))), to_unit_float(static_cast<std::uint32_t>(hash_words(i, 2)))});
+    points.push_back(
+        {to_unit_float(static_cast<std::uint32_t>(hash_words(i, 1))), to_unit_float(static_cast<std::uint32_t>(hash_words(i, 2)))});
   }
   EXPECT_FALSE(is_net(points, 6));
 }

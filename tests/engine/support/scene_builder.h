@@ -14,7 +14,8 @@ namespace fluxfarm::testing {
 // Closed mesh of 12 triangles: the image of [-1,1]^3, front side outwards.
 inline MeshDescription cube(const Transform& to_world) {
   MeshDescription mesh;
-  for (int i = 0; i < 8; ++i) mesh.positions.push_back(to_world.point({i & 1 ? 1.0f : -1.0f, i & 2 ? 1.0f : -1.0f, i & 4 ? 1.0f : -1.0f}));
+  for (int i = 0; i < 8; ++i)
+    mesh.positions.push_back(to_world.point({i & 1 ? 1.0f : -1.0f, i & 2 ? 1.0f : -1.0f, i & 4 ? 1.0f : -1.0f}));
   mesh.indices = {0, 2, 3, 0, 3, 1, 4, 5, 7, 4, 7, 6, 0, 1, 5, 0, 5, 4, 2, 6, 7, 2, 7, 3, 0, 4, 6, 0, 6, 2, 1, 3, 7, 1, 7, 5};
   return mesh;
 }
@@ -96,7 +97,8 @@ inline Measurement measure(const SceneDescription& description, std::uint32_t sp
   std::vector<double> values;
   for (int y = 0; y < frame.height; ++y) {
     for (int x = 0; x < frame.width; ++x) {
-      for (std::uint32_t r = 0; r < kFilmReplicates; ++r) values.push_back(static_cast<double>(result.film.replicate_mean(x, y, r).g));
+      for (std::uint32_t r = 0; r < kFilmReplicates; ++r)
+        values.push_back(static_cast<double>(result.film.replicate_mean(x, y, r).g));
     }
   }
   Measurement m;

@@ -1,7 +1,6 @@
 // The worker's pieces: tiles, codec, frames, and the real process over a socket pair.
-#include <gtest/gtest.h>
-
 #include <fcntl.h>
+#include <gtest/gtest.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
@@ -53,8 +52,8 @@ TEST(FrameRenderer, StopsNearItsTimeAndReportsEachPass) {
   const auto integrator = make_integrator("path", scene);
   const std::atomic<bool> never{false};
   int passes = 0;
-  const FrameResult result = render_frame(scene, *integrator, {{0, 0, 33, 21}, 16, 1, 5, {{}, 0.5, {}}}, never,
-                                          [&](const TimelinePoint&) { ++passes; });
+  const FrameResult result =
+      render_frame(scene, *integrator, {{0, 0, 33, 21}, 16, 1, 5, {{}, 0.5, {}}}, never, [&](const TimelinePoint&) { ++passes; });
   EXPECT_GT(result.seconds, 0.3);
   EXPECT_LT(result.seconds, 1.0);
   EXPECT_EQ(static_cast<std::size_t>(passes), result.timeline.size());
@@ -115,8 +114,9 @@ TEST(Codec, DamagedTileSumsAreAnError) {
   EXPECT_NO_THROW(decode_tile_sums(bytes, "here"));
   EXPECT_THROW(decode_tile_sums(bytes.substr(0, bytes.size() - 9), "here"), ResourceError);
   EXPECT_THROW(decode_tile_sums("nonsense", "here"), ResourceError);
-  EXPECT_THROW(decode_tile_sums(encode_tile_sums({{0, 0, 2, 2}, {0, 1}, 0, std::vector<float>(11), std::vector<float>(32), 0}), "here"),
-               ResourceError);
+  EXPECT_THROW(
+      decode_tile_sums(encode_tile_sums({{0, 0, 2, 2}, {0, 1}, 0, std::vector<float>(11), std::vector<float>(32), 0}), "here"),
+      ResourceError);
 }
 
 TEST(FrameSocket, RefusesFramesThatAreTooLongAndEndsAtEndOfFile) {

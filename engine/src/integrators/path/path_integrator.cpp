@@ -203,7 +203,8 @@ void PathIntegrator::radiance(std::span<const CameraSample> samples, std::uint64
   PathGroup group(*scene_, queries);
   for (std::size_t begin = 0; begin < samples.size();) {
     std::size_t end = begin + 1;
-    while (end < samples.size() && end - begin < kMaxPaths && samples[end].x == samples[begin].x && samples[end].y == samples[begin].y) {
+    while (end < samples.size() && end - begin < kMaxPaths && samples[end].x == samples[begin].x &&
+           samples[end].y == samples[begin].y) {
       ++end;
     }
     group.trace(samples.subspan(begin, end - begin), seed, results.subspan(begin, end - begin));

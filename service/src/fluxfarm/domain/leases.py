@@ -51,9 +51,6 @@ class RenderLease(Lease):
     """Take `samples` of every pixel of `rects`; `tiles` are the grid's indices of the same tiles."""
 
     scene: SceneRef
-    width: int
-    height: int
-    integrator: str
     seed: int
     pass_index: int
     samples: SampleRange

@@ -63,7 +63,7 @@ class Reply:
 def load_scene(request_id: int, scene: SceneRef) -> bytes:
     """The frame that makes a process read and keep a scene."""
     body = pb.LoadScene(
-        scene_digest=scene.key,
+        scene_key=scene.key,
         folder=str(scene.folder),
         entry=scene.entry,
         width=scene.width,
@@ -162,13 +162,10 @@ def _frame(request: pb.Request) -> bytes:
 
 def _render_tiles(work: RenderLease) -> pb.RenderTiles:
     return pb.RenderTiles(
-        scene_digest=work.scene.key,
+        scene_key=work.scene.key,
         seed=work.seed,
         samples=pb.SampleRange(begin=work.samples.begin, end=work.samples.end),
         tiles=[_rect(rect) for rect in work.rects],
-        integrator=work.integrator,
-        width=work.width,
-        height=work.height,
     )
 
 
