@@ -80,7 +80,7 @@ class FakeEngine:
             kind, _, message = told["fail"].partition(" ")
             return self.fail(request_id, pb.FailureKind.Value("FAILURE_KIND_" + kind), message)
         self.wait(request_id, float(told.get("load_seconds", 0)))
-        self.scenes[load.scene_digest] = told
+        self.scenes[load.scene_key] = told
         width, height = (int(side) for side in told.get("size", "64 64").split())
         width, height = load.width or width, load.height or height
         loaded = pb.SceneLoaded(
@@ -95,7 +95,7 @@ class FakeEngine:
         return self.reply(request_id, scene_loaded=loaded)
 
     def render_tiles(self, request_id: int, work: pb.RenderTiles) -> None:
-        told = self.scenes[work.scene_digest]
+        told = self.scenes[work.scene_key]
         if "run_out" in told and len(read(told["run_out"])) < 2:
             append(told["run_out"], b"x")
             return self.fail(request_id, pb.FAILURE_KIND_RESOURCE, "out of memory: 8 GiB, expected less")

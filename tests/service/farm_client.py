@@ -102,7 +102,7 @@ class ServiceProcess:
             "FLUXFARM_DATA": str(settings.data),
             "FLUXFARM_ENGINE": settings.engine,
             "FLUXFARM_PORT": "0",
-            "FLUXFARM_TILE_SIZE": "16",
+            "FLUXFARM_TILE_SIZE": str(settings.tile_size),
             "FLUXFARM_WORKERS": str(workers),
             "FLUXFARM_THREADS": "1",
         }

@@ -1,0 +1,146 @@
+"""Promise 1: the same job gives the same pixels to the bit, whoever renders it and whatever happens on the way."""
+
+import os
+import signal
+import subprocess
+import time
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+import pytest
+from conftest import ENGINE, ROOT, Layers, read_exr, render_alone, same_bits
+from farm_client import Client, ServiceProcess
+
+from fluxfarm.settings import Settings
+
+SCENE = ROOT / "scenes" / "cornell-glass" / "scene.xml"
+SPP = 100
+SIDE = 96
+SEED = 7
+
+
+@pytest.fixture(scope="module")
+def alone(tmp_path_factory: pytest.TempPathFactory) -> Layers:
+    """What the engine alone makes of the job."""
+    out = tmp_path_factory.mktemp("alone") / "alone.exr"
+    return render_alone(SCENE, out, "--size", f"{SIDE}x{SIDE}", "--spp", SPP, "--seed", SEED)
+
+
+class Farm:
+    """A service process that can be killed and started again on the same data."""
+
+    def __init__(self, folder: Path, tile_size: int = 16, workers: int = 1) -> None:
+        self.folder = folder
+        self.workers = workers
+        self.settings = Settings(data=folder / "data", port=0, engine=str(ENGINE), tile_size=tile_size, threads=1)
+        self.start()
+
+    def start(self) -> None:
+        self.service = ServiceProcess(self.settings, self.workers)
+
+    @property
+    def client(self) -> Client:
+        assert self.service.client is not None
+        return self.service.client
+
+    def submit(self) -> str:
+        size = {"width": SIDE, "height": SIDE}
+        return self.client.submit(SCENE.read_text(), size=size, goal={"spp": SPP}, seed=SEED)
+
+    def tiles_done(self, job_id: str) -> int:
+        return int(self.client.job(job_id)["progress"]["tiles_done"])
+
+    def wait_for_tiles(self, job_id: str, count: int) -> None:
+        self.client.wait_until(job_id, lambda job: job["progress"]["tiles_done"] >= count)
+
+    def layers(self, job_id: str) -> Layers:
+        self.client.succeed(job_id)
+        image = self.folder / "image.exr"
+        image.write_bytes(self.client.http.get(f"/v1/jobs/{job_id}/image.exr").content)
+        return read_exr(image)
+
+    def engine_pids(self) -> list[int]:
+        return [worker["pid"] for worker in self.client.http.get("/v1/workers").json()["workers"] if worker["pid"]]
+
+
+@pytest.fixture
+def farms(tmp_path: Path) -> Iterator[list[Farm]]:
+    """Farms to end after the test."""
+    started: list[Farm] = []
+    yield started
+    for farm in started:
+        farm.service.end(signal.SIGTERM)
+
+
+def test_one_worker_with_one_thread_gives_the_bits_of_the_engine_alone(
+    farms: list[Farm], tmp_path: Path, alone: Layers
+) -> None:
+    farms.append(Farm(tmp_path))
+    assert same_bits(alone, farms[0].layers(farms[0].submit()))
+
+
+@pytest.mark.parametrize("tile_size", [16, 32, 64])
+def test_two_workers_and_any_tile_size_give_the_same_bits(
+    farms: list[Farm], tmp_path: Path, alone: Layers, tile_size: int
+) -> None:
+    farms.append(Farm(tmp_path, tile_size=tile_size, workers=2))
+    assert same_bits(alone, farms[0].layers(farms[0].submit()))
+
+
+def test_worker_killed_in_the_middle_of_a_pass_gives_the_same_bits(
+    farms: list[Farm], tmp_path: Path, alone: Layers
+) -> None:
+    farms.append(farm := Farm(tmp_path, workers=2))
+    job_id = farm.submit()
+    for tiles in (40, 150):
+        farm.wait_for_tiles(job_id, tiles)
+        os.kill(farm.engine_pids()[0], signal.SIGKILL)
+    assert same_bits(alone, farm.layers(job_id))
+    assert sum(worker["restarts"] for worker in farm.client.http.get("/v1/workers").json()["workers"]) >= 1
+
+
+def test_service_killed_and_started_again_gives_the_same_bits(farms: list[Farm], tmp_path: Path, alone: Layers) -> None:
+    farms.append(farm := Farm(tmp_path, workers=2))
+    job_id = farm.submit()
+    for tiles in (50, 180):
+        farm.wait_for_tiles(job_id, tiles)
+        farm.service.end(signal.SIGKILL)
+        farm.start()
+        assert farm.tiles_done(job_id) >= tiles, "a tile that was reported done is lost"
+    assert same_bits(alone, farm.layers(job_id))
+
+
+def test_pause_and_resume_give_the_same_bits(farms: list[Farm], tmp_path: Path, alone: Layers) -> None:
+    farms.append(farm := Farm(tmp_path))
+    job_id = farm.submit()
+    farm.wait_for_tiles(job_id, 60)
+    assert farm.client.http.post(f"/v1/jobs/{job_id}:pause").status_code == 200
+    time.sleep(1)
+    paused = farm.tiles_done(job_id)
+    time.sleep(1)
+    assert farm.tiles_done(job_id) == paused, "a paused job goes on"
+    assert farm.client.http.post(f"/v1/jobs/{job_id}:resume").status_code == 200
+    assert same_bits(alone, farm.layers(job_id))
+
+
+def test_tile_image_is_the_same_part_of_the_frame(farms: list[Farm], tmp_path: Path, alone: Layers) -> None:
+    farms.append(farm := Farm(tmp_path, tile_size=32))
+    job_id = farm.submit()
+    farm.client.succeed(job_id)
+    tile = tmp_path / "tile.exr"
+    tile.write_bytes(farm.client.http.get(f"/v1/jobs/{job_id}/tiles/2-1.exr").content)
+    assert np.array_equal(read_exr(tile)["R"], alone["R"][32:64, 64:96])
+
+
+def test_command_line_gives_the_bits_of_the_engine_alone(tmp_path: Path, alone: Layers) -> None:
+    out = tmp_path / "out.exr"
+    command = [ENGINE.with_name("fluxfarm"), "render", SCENE, "-o", out]
+    options = ["--size", f"{SIDE}x{SIDE}", "--spp", str(SPP), "--seed", str(SEED)]
+    subprocess.run([*command, *options], check=True, capture_output=True)
+    assert same_bits(alone, read_exr(out))
+
+
+def test_another_seed_gives_other_bits(tmp_path: Path, alone: Layers) -> None:
+    other = render_alone(SCENE, tmp_path / "o.exr", "--size", f"{SIDE}x{SIDE}", "--spp", SPP, "--seed", SEED + 1)
+    assert not same_bits(alone, other)
