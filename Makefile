@@ -50,9 +50,9 @@ format: $(VENV)/.ready
 bench: build
 	$(PYTHON) tests/benchmarks/bench.py --out out/bench.json
 
-# Error over time of each scene and integrator, as measured by the engine's own reports.
+# Estimated error over time of each authored scene, an SVG each.
 chart: build
-	$(PYTHON) tests/benchmarks/chart.py --out out/chart.svg
+	$(PYTHON) tests/benchmarks/chart.py --out out
 
 # The slow statistical and fault suites.
 stability: build

@@ -1,15 +1,21 @@
 """The real engine, alone and behind a real service."""
 
 import os
+import signal
 import subprocess
 import sys
+from collections.abc import Iterator
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 import OpenEXR
 import pytest
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "service"))  # farm_client
+
+if TYPE_CHECKING:
+    from farm import Farm
 
 ROOT = Path(__file__).parents[2]
 ENGINE = Path(os.environ.get("FLUXFARM_ENGINE", Path(sys.executable).with_name("fluxfarm-engine")))
@@ -52,3 +58,12 @@ def outside_scene(name: str) -> Path:
 def engine_is_built() -> None:
     if not ENGINE.exists():
         pytest.fail(f"{ENGINE} does not exist: make build")
+
+
+@pytest.fixture
+def farms() -> Iterator[list["Farm"]]:
+    """Farms to end after the test."""
+    started: list[Farm] = []
+    yield started
+    for farm in started:
+        farm.service.end(signal.SIGTERM)
