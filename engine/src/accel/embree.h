@@ -21,23 +21,32 @@ inline void embree_intersect(RTCScene scene, RTCRayHit& ray_hit) {
 #endif
 }
 
-// Sixteen rays at once; lanes with valid[i] == 0 are left alone, the others have valid[i] == -1.
-inline void embree_intersect(RTCScene scene, const int* valid, RTCRayHit16& ray_hits) {
+// Sixteen rays at once; lanes with valid[i] == 0 are left alone, the others have valid[i] == -1. `coherent`: the rays
+// start and point alike.
+inline void embree_intersect(RTCScene scene, const int* valid, bool coherent, RTCRayHit16& ray_hits) {
 #if FLUXFARM_EMBREE_MAJOR == 4
-  rtcIntersect16(valid, scene, &ray_hits);
+  RTCIntersectArguments arguments;
+  rtcInitIntersectArguments(&arguments);
+  if (coherent) arguments.flags = RTC_RAY_QUERY_FLAG_COHERENT;
+  rtcIntersect16(valid, scene, &ray_hits, &arguments);
 #else
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
+  if (coherent) context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
   rtcIntersect16(valid, scene, &context, &ray_hits);
 #endif
 }
 
-inline void embree_occluded(RTCScene scene, const int* valid, RTCRay16& rays) {
+inline void embree_occluded(RTCScene scene, const int* valid, bool coherent, RTCRay16& rays) {
 #if FLUXFARM_EMBREE_MAJOR == 4
-  rtcOccluded16(valid, scene, &rays);
+  RTCOccludedArguments arguments;
+  rtcInitOccludedArguments(&arguments);
+  if (coherent) arguments.flags = RTC_RAY_QUERY_FLAG_COHERENT;
+  rtcOccluded16(valid, scene, &rays, &arguments);
 #else
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
+  if (coherent) context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
   rtcOccluded16(valid, scene, &context, &rays);
 #endif
 }

@@ -191,14 +191,14 @@ void fill(std::span<const Ray> rays, int* valid, Packet& packet) {
 
 }  // namespace
 
-void RayAccelerator::intersect(std::span<const Ray> rays, std::span<Hit> hits) const {
+void RayAccelerator::intersect(std::span<const Ray> rays, std::span<Hit> hits, bool coherent) const {
   while (rays.size() >= kMinPacket) {
     const std::size_t count = std::min(rays.size(), kPacket);
     alignas(64) int valid[kPacket];
     RTCRayHit16 packet;
     fill(rays.first(count), valid, packet.ray);
     for (std::size_t i = 0; i < kPacket; ++i) packet.hit.geomID[i] = packet.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
-    embree_intersect(impl_->scene, valid, packet);
+    embree_intersect(impl_->scene, valid, coherent, packet);
     for (std::size_t i = 0; i < count; ++i) {
       hits[i] = {packet.ray.tfar[i], packet.hit.geomID[i], packet.hit.primID[i], packet.hit.u[i], packet.hit.v[i]};
     }
@@ -210,13 +210,13 @@ void RayAccelerator::intersect(std::span<const Ray> rays, std::span<Hit> hits) c
   }
 }
 
-void RayAccelerator::occluded(std::span<const Ray> rays, std::span<bool> occluded_out) const {
+void RayAccelerator::occluded(std::span<const Ray> rays, std::span<bool> occluded_out, bool coherent) const {
   while (rays.size() >= kMinPacket) {
     const std::size_t count = std::min(rays.size(), kPacket);
     alignas(64) int valid[kPacket];
     RTCRay16 packet;
     fill(rays.first(count), valid, packet);
-    embree_occluded(impl_->scene, valid, packet);
+    embree_occluded(impl_->scene, valid, coherent, packet);
     for (std::size_t i = 0; i < count; ++i) occluded_out[i] = packet.tfar[i] < 0;
     rays = rays.subspan(count);
     occluded_out = occluded_out.subspan(count);

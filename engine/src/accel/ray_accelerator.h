@@ -51,9 +51,10 @@ class RayAccelerator {
   // For each ray the nearest hit in (t_min, t_max); Hit::shape is Hit::kNone where there is none. Rays are traced in packets of
   // sixteen in the order given: the last bits of a hit may depend on which rays share its packet, so callers that promise the same
   // bits must group rays the same way each time.
-  void intersect(std::span<const Ray> rays, std::span<Hit> hits) const;
+  // `coherent` promises that they start and point alike, which is traced faster; it is no condition for a right result.
+  void intersect(std::span<const Ray> rays, std::span<Hit> hits, bool coherent) const;
   // For each ray whether anything lies in (t_min, t_max).
-  void occluded(std::span<const Ray> rays, std::span<bool> occluded) const;
+  void occluded(std::span<const Ray> rays, std::span<bool> occluded, bool coherent) const;
 
   // One ray. Nearest hit in (t_min, t_max); false if there is none.
   bool intersect(const Ray& ray, Hit& hit) const;

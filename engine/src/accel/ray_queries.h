@@ -14,13 +14,13 @@ class RayQueries {
   explicit RayQueries(const RayAccelerator& accelerator) : accelerator_(accelerator) {}
 
   // As the accelerator's functions of the same names.
-  void intersect(std::span<const Ray> rays, std::span<Hit> hits) {
+  void intersect(std::span<const Ray> rays, std::span<Hit> hits, bool coherent) {
     count(rays, false);
-    accelerator_.intersect(rays, hits);
+    accelerator_.intersect(rays, hits, coherent);
   }
-  void occluded(std::span<const Ray> rays, std::span<bool> occluded_out) {
+  void occluded(std::span<const Ray> rays, std::span<bool> occluded_out, bool coherent) {
     count(rays, true);
-    accelerator_.occluded(rays, occluded_out);
+    accelerator_.occluded(rays, occluded_out, coherent);
   }
 
   void record_to(std::vector<RecordedRay>* rays) { recording_ = rays; }

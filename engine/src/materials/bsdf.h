@@ -44,6 +44,13 @@ class Bsdf {
   virtual bool has_continuous_lobe() const = 0;
   // Whether sample() looks at u_lobe.
   virtual bool chooses_lobe() const { return true; }
+  // The two one-sided BSDFs of a two-sided one, each in a frame whose z points to its side; null for all others. Whoever knows the
+  // side of wo may ask them directly and spare the detour.
+  struct Sides {
+    const Bsdf* front = nullptr;
+    const Bsdf* back = nullptr;
+  };
+  virtual Sides sides() const { return {}; }
   // True if light can pass to the other side.
   virtual bool transmits() const { return false; }
 

@@ -26,6 +26,7 @@ class Twosided final : public Bsdf {
 
   Rgb albedo(const Vec3f& wo) const override { return asked(wo).albedo(on_side(wo, side_of(wo))); }
   bool has_continuous_lobe() const override { return sides_[0]->has_continuous_lobe() || sides_[1]->has_continuous_lobe(); }
+  Sides sides() const override { return {sides_[0], sides_[1]}; }
   bool chooses_lobe() const override { return sides_[0]->chooses_lobe() || sides_[1]->chooses_lobe(); }
 
  private:

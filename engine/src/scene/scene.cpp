@@ -31,9 +31,13 @@ Scene::Scene(const SceneDescription& description, int threads)
   for (const ShapeDescription& shape : description.shapes) {
     Surface surface;
     surface.shape = add_shape(shape, shape.emitted_radiance.has_value(), *accelerator_);
-    surface.bsdf = bsdfs_[shape.material].get();
-    surface.has_continuous_lobe = surface.bsdf->has_continuous_lobe();
-    surface.chooses_lobe = surface.bsdf->chooses_lobe();
+    const Bsdf* bsdf = bsdfs_[static_cast<std::size_t>(shape.material)].get();
+    const Bsdf::Sides sides = bsdf->sides();
+    surface.front = sides.front != nullptr ? sides.front : bsdf;
+    surface.back = sides.back != nullptr ? sides.back : bsdf;
+    surface.two_sided = sides.front != nullptr;
+    surface.has_continuous_lobe = bsdf->has_continuous_lobe();
+    surface.chooses_lobe = bsdf->chooses_lobe();
     surface.anisotropic = is_anisotropic(description.materials, description.materials[shape.material]);
     census_.anisotropic_materials |= surface.anisotropic;
     census_.delta_materials |= !surface.has_continuous_lobe && !shape.emitted_radiance;

@@ -30,9 +30,12 @@ class Scene {
   // One surface of the scene with all that belongs to it.
   struct Surface {
     std::unique_ptr<Shape> shape;
-    const Bsdf* bsdf = nullptr;
+    // Asked for light that arrives on the front and on the back; the same one unless the material is two-sided.
+    const Bsdf* front = nullptr;
+    const Bsdf* back = nullptr;
     const AreaEmitter* emitter = nullptr;  // nullptr: does not emit
     float choice_probability = 0;          // of its emitter in next-event estimation
+    bool two_sided = false;
     bool anisotropic = false;
     // The material's answers to the questions of the same name.
     bool has_continuous_lobe = false, chooses_lobe = false;

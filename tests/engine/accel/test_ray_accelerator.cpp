@@ -61,8 +61,8 @@ TEST_F(MixedScene, PacketsOfAnySizeFindWhatSingleRaysFind) {
     }
     std::vector<Hit> hits(count);
     const auto blocked = std::make_unique<bool[]>(count);
-    accelerator_.intersect(rays, hits);
-    accelerator_.occluded(rays, {blocked.get(), count});
+    accelerator_.intersect(rays, hits, count % 2 == 0);
+    accelerator_.occluded(rays, {blocked.get(), count}, count % 2 == 0);
     for (std::size_t i = 0; i < count; ++i) {
       Hit single;
       const bool found = accelerator_.intersect(rays[i], single);

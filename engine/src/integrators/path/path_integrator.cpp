@@ -57,7 +57,11 @@ class PathGroup {
     for (int depth = 0; paths_ > 0; ++depth) {
       sampler_.draw_2d(dimension_of(depth, kDirection), u_direction_);
       if (!scene_.emitters().empty()) sampler_.draw_2d(dimension_of(depth, kEmitterPoint), u_emitter_);
-      queries_.intersect({rays_.data(), paths_}, {hits_.data(), paths_});
+      queries_.intersect({rays_.data(), paths_}, {hits_.data(), paths_}, depth == 0);
+      // All vertices first: they do not depend on each other, so the waits for their memory overlap.
+      for (std::size_t i = 0; i < paths_; ++i) {
+        if (hits_[i].shape != Hit::kNone) vertices_[i] = PathVertex(scene_, rays_[i], hits_[i]);
+      }
       std::size_t alive = 0;
       lights_ = 0;
       for (std::size_t i = 0; i < paths_; ++i) {
@@ -72,7 +76,7 @@ class PathGroup {
       }
       paths_ = alive;
       sampler_.resize(alive);
-      gather_lights();
+      gather_lights(depth == 0);
     }
   }
 
@@ -101,14 +105,14 @@ class PathGroup {
       if (scene_.environment() && shows_emitters) path.result->radiance += path.throughput * *scene_.environment();
       return false;
     }
-    const PathVertex vertex(scene_, ray, hit);
+    const PathVertex& vertex = vertices_[i];
     if (depth == 0) note_first_hit(vertex, *path.result);
-    if (vertex.surface.emitter != nullptr && shows_emitters) add_emission(path, vertex, ray, hit);
+    if (vertex.surface->emitter != nullptr && shows_emitters) add_emission(path, vertex, ray, hit);
     if (depth + 1 >= max_depth_) return false;
-    if (vertex.surface.has_continuous_lobe && !scene_.emitters().empty()) sample_light(i, depth, vertex);
+    if (vertex.surface->has_continuous_lobe && !scene_.emitters().empty()) sample_light(i, depth, vertex);
 
-    const float u_lobe = vertex.surface.chooses_lobe ? sampler_.draw_1d(dimension_of(depth, kLobe), i) : 0.0f;
-    const std::optional<BsdfSample> scatter = vertex.surface.bsdf->sample(vertex.wo, u_lobe, u_direction_[i]);
+    const float u_lobe = vertex.surface->chooses_lobe ? sampler_.draw_1d(dimension_of(depth, kLobe), i) : 0.0f;
+    const std::optional<BsdfSample> scatter = vertex.bsdf->sample(vertex.wo, u_lobe, u_direction_[i]);
     if (!scatter) return false;
     path.throughput *= scatter->weight;
     path.eta_scale *= scatter->eta * scatter->eta;
@@ -124,18 +128,18 @@ class PathGroup {
   void note_first_hit(const PathVertex& vertex, SampleResult& result) const {
     result.hit = true;
     result.depth = scene_.camera().depth(vertex.point.position);
-    result.normal = vertex.wo.z < 0 ? -vertex.point.shading_normal : vertex.point.shading_normal;
-    result.albedo = vertex.surface.bsdf->albedo(vertex.wo);
+    result.normal = vertex.wo.z < 0 ? -vertex.frame.n : vertex.frame.n;
+    result.albedo = vertex.bsdf->albedo(vertex.wo);
   }
 
   // Emission found by BSDF sampling, weighted against next-event estimation, which could have found it, too.
   static void add_emission(Path& path, const PathVertex& vertex, const Ray& ray, const Hit& hit) {
-    const Rgb emitted = vertex.surface.emitter->radiance(vertex.point, ray.direction);
+    const Rgb emitted = vertex.surface->emitter->radiance(vertex.point, ray.direction);
     if (emitted.is_black()) return;
     float weight = 1;
     if (!path.delta) {
-      const float pdf = vertex.surface.shape->pdf(ray.origin, vertex.point, hit.primitive, ray.direction, hit.t);
-      weight = power_heuristic(path.bsdf_pdf, pdf * vertex.surface.choice_probability);
+      const float pdf = vertex.surface->shape->pdf(ray.origin, vertex.point, hit.primitive, ray.direction, hit.t);
+      weight = power_heuristic(path.bsdf_pdf, pdf * vertex.surface->choice_probability);
     }
     path.result->radiance += path.throughput * emitted * weight;
   }
@@ -148,7 +152,7 @@ class PathGroup {
     const std::optional<EmitterSample> light = choice.emitter->sample(vertex.point.position, u_emitter_[i]);
     if (!light) return;
     const Vec3f wi = vertex.frame.to_local(light->wi);
-    const BsdfValue scatter = vertex.surface.bsdf->value(vertex.wo, wi);
+    const BsdfValue scatter = vertex.bsdf->value(vertex.wo, wi);
     if (scatter.f.is_black()) return;
 
     // The shadow ray runs between points that are moved off both surfaces.
@@ -163,8 +167,8 @@ class PathGroup {
     pending_[lights_++] = {path_[i].throughput * arriving, path_[i].result};
   }
 
-  void gather_lights() {
-    queries_.occluded({shadow_rays_.data(), lights_}, {occluded_.data(), lights_});
+  void gather_lights(bool coherent) {
+    queries_.occluded({shadow_rays_.data(), lights_}, {occluded_.data(), lights_}, coherent);
     for (std::size_t i = 0; i < lights_; ++i) {
       if (!occluded_[i]) pending_[i].result->radiance += pending_[i].radiance;
     }
@@ -190,6 +194,7 @@ class PathGroup {
   std::array<Path, kMaxPaths> path_;
   std::array<Ray, kMaxPaths> rays_;
   std::array<Hit, kMaxPaths> hits_;
+  std::array<PathVertex, kMaxPaths> vertices_;
   std::size_t lights_ = 0;
   std::array<Ray, kMaxPaths> shadow_rays_;
   std::array<PendingLight, kMaxPaths> pending_;

@@ -9,16 +9,23 @@
 namespace fluxfarm {
 
 struct PathVertex {
-  const Scene::Surface& surface;
+  const Scene::Surface* surface = nullptr;
   SurfacePoint point;
-  Frame frame;  // around the shading normal
+  Frame frame;  // around the shading normal; on a two-sided surface turned to the side of wo
   Vec3f wo;     // local, towards where the path came from
+  const Bsdf* bsdf = nullptr;  // of that side
 
-  PathVertex(const Scene& scene, const Ray& ray, const Hit& hit) : surface(scene.surface(hit.shape)) {
-    point = surface.shape->surface_point(ray, hit);
+  PathVertex() = default;
+  PathVertex(const Scene& scene, const Ray& ray, const Hit& hit) : surface(&scene.surface(hit.shape)) {
+    point = surface->shape->surface_point(ray, hit);
     frame = Frame(point.shading_normal);
-    if (surface.anisotropic) align(surface.shape->tangent(point, hit));
+    if (surface->anisotropic) align(surface->shape->tangent(point, hit));
     wo = frame.to_local(-ray.direction);
+    const bool back = wo.z < 0;
+    const float side = back && surface->two_sided ? -1.0f : 1.0f;
+    frame.n *= side;
+    wo.z *= side;
+    bsdf = back ? surface->back : surface->front;
   }
 
   // Where a ray towards `direction` (world) may start without meeting its own surface.
