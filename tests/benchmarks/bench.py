@@ -61,7 +61,9 @@ def rel_mse(image: np.ndarray, reference: np.ndarray) -> float:
 def against_mitsuba(name: str, scene: Path, out: Path, peer: str, spp: int) -> dict[str, Any]:
     """Both renderers at equal spp, three seeds each, against a reference of 32 times as many samples of our own."""
     reference, _ = render(scene, out, 32 * spp, 999)
-    ours = [(rel_mse(image, reference), seconds) for image, seconds in (render(scene, out, spp, seed) for seed in range(3))]
+    ours = [
+        (rel_mse(image, reference), seconds) for image, seconds in (render(scene, out, spp, seed) for seed in range(3))
+    ]
     images = out.parent / f"mitsuba-{name}.npz"
     script = Path(__file__).with_name("mitsuba_peer.py")
     subprocess.run([peer, script, scene, str(SIDE), str(spp), images], check=True)

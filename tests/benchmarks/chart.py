@@ -23,7 +23,16 @@ def main() -> None:
     options.out.mkdir(parents=True, exist_ok=True)
     for scene in sorted((ROOT / "scenes").glob("*/scene.xml")):
         name, report = scene.parent.name, options.out / "report.json"
-        arguments = ["-o", options.out / f"{name}.exr", "--size", "256x256", "--spp", str(options.spp), "--report", report]
+        arguments = [
+            "-o",
+            options.out / f"{name}.exr",
+            "--size",
+            "256x256",
+            "--spp",
+            str(options.spp),
+            "--report",
+            report,
+        ]
         subprocess.run([ENGINE, "render", scene, *arguments], check=True)
         timeline = json.loads(report.read_text())["timeline"]
         chart = options.out / f"chart-{name}.svg"

@@ -1,14 +1,13 @@
-"""Renders a scene with Mitsuba 3's path tracer: mitsuba_peer.py SCENE SIDE SPP OUT.npz. Run by bench.py in another Python."""
+"""Mitsuba 3's path tracer on a scene, run by bench.py in another Python: mitsuba_peer.py SCENE SIDE SPP OUT."""
 
 import re
 import sys
 import time
 from pathlib import Path
 
-import numpy as np
-
 import drjit as dr
 import mitsuba as mi
+import numpy as np
 
 SEEDS = 3
 

@@ -3,12 +3,10 @@
 Needs a Python with mitsuba and numpy (a peer for references only, no dependency of Fluxfarm), and takes up to an hour:
 
     PEER_PYTHON tests/render/make_reference.py cornell-box --size 256x256 --spp 256 --runs 24
-    PEER_PYTHON tests/render/make_reference.py veach-mis --size 256x144 --spp 512 --runs 32 --all-normals
+    PEER_PYTHON tests/render/make_reference.py veach-mis --size 256x144 --spp 512 --runs 32
     PEER_PYTHON tests/render/make_reference.py veach-bidir --size 256x256 --spp 1024 --runs 40
 
-Equal depth: the scenes' own max_depth. The film samples beyond its border (sample_border), as pixel filters do here. With
---all-normals rough metals choose among all microfacet normals: the density that Mitsuba 3.6 states for visible normals of
-Beckmann's distribution is a fit that its samples do not follow (0.35 % off), and multiple importance sampling then is biased.
+Equal depth: the scenes' own max_depth. The film samples beyond its border (sample_border), as pixel filters do here.
 """
 
 import argparse
@@ -42,7 +40,7 @@ def summary(images: np.ndarray) -> dict[str, list]:
     return {name: [[[float(f"{v:.6g}") for v in c] for c in row] for row in table] for name, table in tables.items()}
 
 
-def render_runs(scene: Path, width: int, height: int, spp: int, runs: int, all_normals: bool) -> np.ndarray:
+def render_runs(scene: Path, width: int, height: int, spp: int, runs: int) -> np.ndarray:
     """(runs, height, width, 3) float32, each run with its own seed."""
     import mitsuba as mi
 
@@ -50,9 +48,6 @@ def render_runs(scene: Path, width: int, height: int, spp: int, runs: int, all_n
     xml = scene.read_text().replace("models/", f"{scene.parent.resolve()}/models/")
     border = '<boolean name="sample_border" value="true"/></film>'
     xml = xml.replace("</film>", border)
-    if all_normals:
-        rough = '<bsdf type="roughconductor">'
-        xml = xml.replace(rough, rough + '<boolean name="sample_visible" value="false"/>')
     loaded = mi.load_string(xml, resx=width, resy=height, spp=spp)
     images = [np.array(mi.render(loaded, spp=spp, seed=1000 + run))[..., :3] for run in range(runs)]
     return np.stack(images)
@@ -64,23 +59,21 @@ def main() -> None:
     parser.add_argument("--size", default="256x256")
     parser.add_argument("--spp", type=int, default=256, help="samples per pixel and run")
     parser.add_argument("--runs", type=int, default=24)
-    parser.add_argument("--all-normals", action="store_true")
     options = parser.parse_args()
     here = Path(__file__).parent
     scene = here.parents[2] / "shared" / "scenes-data" / options.name / "scene.xml"
     width, height = map(int, options.size.split("x"))
-    images = render_runs(scene, width, height, options.spp, options.runs, options.all_normals)
-    write_reference(here / "references" / f"{options.name}.json", images, options.spp, options.all_normals)
+    images = render_runs(scene, width, height, options.spp, options.runs)
+    write_reference(here / "references" / f"{options.name}.json", images, options.spp)
 
 
-def write_reference(path: Path, images: np.ndarray, spp: int, all_normals: bool) -> None:
+def write_reference(path: Path, images: np.ndarray, spp: int) -> None:
     """The JSON file of one scene."""
     import mitsuba as mi
 
     runs, height, width, _ = images.shape
     head = {
         "renderer": f"Mitsuba {mi.__version__} path, llvm_ad_rgb, independent sampler",
-        "all_normals": all_normals,
         "width": width,
         "height": height,
         "block": BLOCK,

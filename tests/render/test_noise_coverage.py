@@ -1,8 +1,8 @@
 """Promise 3: error.noise holds. Over many seeds the 95 % interval covers a long reference in 90 to 98 % of the pixels.
 
-The interval is luminance +- t error.noise with t the 97.5 % quantile of Student's t with 7 degrees of freedom (8 replicates),
-as the EXR header says. The reference has its own noise, about 1/16 of the tested images' in the slow test: it is added to the
-interval in quadrature, which changes it by 0.2 %.
+The interval is luminance +- t error.noise with t the 97.5 % quantile of Student's t with 7 degrees of freedom (8
+replicates), as the EXR header says. The reference has its own noise, about 1/16 of the tested images' in the slow test:
+it is added to the interval in quadrature, which changes it by 0.2 %.
 """
 
 from pathlib import Path

@@ -1,8 +1,9 @@
 """Real scenes from outside against Mitsuba 3, block by block of 16 x 16 pixels.
 
-References are the block means of long Mitsuba runs with equal depth and their standard errors (make_reference.py). All blocks
-and channels together reject a right picture with a probability of 1 % (Sidak). veach-bidir has heavy tails (the lamp's light
-reaches the wall through glass): there the medians over the runs are compared, with errors from the median absolute deviation.
+References are the block means of long Mitsuba runs with equal depth and their standard errors (make_reference.py). All
+blocks and channels together reject a right picture with a probability of 1 % (Sidak). veach-mis and veach-bidir have
+heavy tails (light that reaches a diffuse surface by way of a sharp mirror or of glass): there the medians over the runs
+are compared, with errors from the median absolute deviation.
 """
 
 import json
@@ -62,7 +63,10 @@ def allowed_outliers(count: int) -> int:
 
 def report(name: str, z: np.ndarray) -> str:
     beyond = int((z > MAX_Z).sum())
-    return f"{name}: {z.size} blocks and channels, largest z {z.max():.2f}, root mean square {np.sqrt((z**2).mean()):.2f}, {beyond} beyond 4"
+    rms = np.sqrt((z**2).mean())
+    return (
+        f"{name}: {z.size} blocks and channels, largest z {z.max():.2f}, root mean square {rms:.2f}, {beyond} beyond 4"
+    )
 
 
 @pytest.mark.parametrize(("name", "runs", "spp"), [("cornell-box", 12, 16), ("veach-mis", 12, 16)])
@@ -90,7 +94,7 @@ def test_cornell_box_has_the_published_means(tmp_path: Path) -> None:
 @pytest.mark.timeout(3600)
 @pytest.mark.parametrize(
     ("name", "statistic", "runs", "spp"),
-    [("cornell-box", "mean", 32, 128), ("veach-mis", "mean", 32, 256), ("veach-bidir", "median", 32, 512)],
+    [("cornell-box", "mean", 32, 128), ("veach-mis", "median", 32, 512), ("veach-bidir", "median", 32, 512)],
 )
 def test_all_blocks_agree_with_mitsuba_within_four_errors(
     name: str, statistic: str, runs: int, spp: int, tmp_path: Path

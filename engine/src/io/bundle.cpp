@@ -21,7 +21,7 @@ fs::path find_inside(const fs::path& folder, const fs::path& base, const std::st
   if (filename.find('\0') != std::string::npos)
     throw SceneError(place, "file " + in_quotes(filename) + " has a zero byte in its name");
   std::error_code error;
-  const fs::path path = fs::weakly_canonical(base / filename, error);
+  fs::path path = fs::weakly_canonical(base / filename, error);
   if (error) throw SceneError(place, "file " + in_quotes(filename) + " cannot be found: " + error.message());
   if (!lies_inside(path, folder)) {
     throw SceneError(place, "file " + in_quotes(filename) + " lies outside the scene's folder; copy it into the folder");

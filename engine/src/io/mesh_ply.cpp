@@ -95,7 +95,8 @@ void check_count(const PlyElement& element, const PlyHeader& header, const PlyRo
 std::uint64_t take_length(PlyRows& rows, const PlyHeader& header, const PlyProperty& property) {
   const double length = rows.take(property.count_type);
   const std::uint64_t smallest = header.encoding == PlyEncoding::kAscii ? 2 : size_of(property.type);
-  if (!(length >= 0) || length != std::floor(length) || length > static_cast<double>((rows.bytes_left() + 1) / smallest)) {
+  const std::uint64_t most = (rows.bytes_left() + 1) / smallest;
+  if (!(length >= 0) || length != std::floor(length) || length > static_cast<double>(most)) {
     rows.fail("list " + in_quotes(property.name) + " has a length of " + number_text(length) + ", but " +
               std::to_string(rows.bytes_left()) + " bytes are left in the file");
   }

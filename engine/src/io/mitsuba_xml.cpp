@@ -127,7 +127,7 @@ class XmlSceneReader {
 
   std::string property_name(const Source& source, const PluginNode& parent, const std::string& name) const {
     if (!source.legacy) return name;
-    const std::string modern = with_underscores(name);
+    std::string modern = with_underscores(name);
     if (parent.type == "diffuse" && modern == "diffuse_reflectance") return "reflectance";
     return modern;
   }

@@ -126,9 +126,9 @@ int MaterialReader::read(const PluginNode& bsdf_or_reference) {
       bsdf_or_reference.kind == PluginKind::kReference ? referenced_bsdf(bsdf_or_reference, plugins_) : bsdf_or_reference;
   if (const auto known = indices_.find(&node); known != indices_.end()) return known->second;
   if (!being_read_.insert(&node).second) throw SceneError(bsdf_or_reference.place, title(node) + " contains itself");
-  MaterialDescription material = node.type == "twosided" ? read_twosided(node) : read_simple(node);
+  const MaterialDescription material = node.type == "twosided" ? read_twosided(node) : read_simple(node);
   being_read_.erase(&node);
-  materials_.push_back(std::move(material));
+  materials_.push_back(material);
   return indices_[&node] = static_cast<int>(materials_.size()) - 1;
 }
 

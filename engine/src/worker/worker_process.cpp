@@ -93,7 +93,7 @@ class Worker {
     if (const auto found = running_.find(request.target); found != running_.end()) found->second->cancelled = true;
   }
 
-  void handle(std::uint64_t id, LoadSceneRequest request) {
+  void handle(std::uint64_t id, const LoadSceneRequest& request) {
     // Known from now on, so that tiles may be asked for before it is loaded: they wait for it. Loading is urgent, hence begun
     // before any of them.
     SceneFuture scene = scenes_.find(request.key);

@@ -11,8 +11,8 @@ namespace fluxfarm {
 struct PathVertex {
   const Scene::Surface* surface = nullptr;
   SurfacePoint point;
-  Frame frame;  // around the shading normal; on a two-sided surface turned to the side of wo
-  Vec3f wo;     // local, towards where the path came from
+  Frame frame;                 // around the shading normal; on a two-sided surface turned to the side of wo
+  Vec3f wo;                    // local, towards where the path came from
   const Bsdf* bsdf = nullptr;  // of that side
 
   PathVertex() = default;
