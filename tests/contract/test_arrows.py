@@ -1,0 +1,125 @@
+"""The arrows between rooms, as the include and import lines have them. `a <- b` in the design reads "b uses a"."""
+
+import ast
+import re
+from pathlib import Path
+
+ROOT = Path(__file__).parents[2]
+
+# Each room of the engine and the rooms that it may use. Rooms of equal rank do not use each other.
+SHADING = {"support", "math", "sampling", "geometry"}
+ENGINE = {
+    "support": set(),
+    "math": {"support"},
+    "sampling": {"support", "math"},
+    "film": {"support", "math"},
+    "geometry": SHADING - {"geometry"},
+    "materials": SHADING,
+    "emitters": SHADING,
+    "accel": SHADING,
+    "scene": SHADING | {"materials", "emitters", "accel"},
+    "integrators": SHADING | {"materials", "emitters", "accel", "scene"},
+    "io": {"support", "math", "film", "scene", "materials", "sampling"},
+    "worker": {*SHADING, "materials", "emitters", "accel", "scene", "integrators", "film", "io"},
+}
+ENGINE["apps"] = {*ENGINE["worker"], "worker"}
+# Of these rooms io may use the plain descriptions only.
+IO_HEADERS = {
+    "scene": {"scene/description.h"},
+    "materials": {"materials/material_description.h"},
+    "sampling": {"sampling/pixel_filter.h"},
+}
+# Third-party headers and the only places that may see them.
+THIRD_PARTY = {
+    r"embree[34]/": ["accel/"],
+    r"(Imf|Imath|Iex|OpenEXR)": ["io/"],
+    r"pugixml": ["io/"],
+    r"png\.h": ["io/"],
+    r".*\.pb\.h": ["worker/codec.cpp"],
+    r"nlohmann/": ["io/", "worker/plan.cpp", "apps/"],
+    r"CLI/": ["apps/"],
+}
+
+# Each room of the service and the rooms that it may use; `errors` belongs to all.
+SERVICE = {
+    "domain": set(),
+    "ports": {"domain"},
+    "orchestrator": {"domain", "ports"},
+    "adapters": {"domain", "ports", "settings"},
+    "api": {"domain", "ports", "orchestrator", "settings"},
+}
+
+
+def engine_breaches(sources: Path, apps: Path) -> list[str]:
+    """Each forbidden include as "file: header"."""
+    breaches = []
+    for file in sorted([*sources.rglob("*.h"), *sources.rglob("*.cpp"), *apps.rglob("*.h"), *apps.rglob("*.cpp")]):
+        inside = file.is_relative_to(sources)
+        place = file.relative_to(sources).as_posix() if inside else f"apps/{file.name}"
+        room = place.split("/")[0]
+        for header in re.findall(r'^#include [<"]([^>"]+)[>"]', file.read_text(), re.MULTILINE):
+            used = header.split("/")[0]
+            ours = used in ENGINE and "/" in header
+            wrong = ours and used != room and used not in ENGINE[room]
+            wrong |= ours and room == "io" and header not in IO_HEADERS.get(used, {header})
+            for pattern, places in THIRD_PARTY.items():
+                wrong |= bool(re.match(pattern, header)) and not any(place.startswith(p) for p in places)
+            if wrong:
+                breaches.append(f"{place}: {header}")
+    return breaches
+
+
+def service_breaches(package: Path) -> list[str]:
+    """Each forbidden import as "file: module"."""
+    breaches = []
+    for file in sorted(package.rglob("*.py")):
+        place = file.relative_to(package).as_posix()
+        room = place.removesuffix(".py").split("/")[0]
+        if room not in SERVICE:
+            continue  # app, settings, errors and the commands wire the rooms together
+        for node in ast.walk(ast.parse(file.read_text())):
+            modules = [node.module or ""] if isinstance(node, ast.ImportFrom) else []
+            modules += [alias.name for alias in node.names] if isinstance(node, ast.Import) else []
+            for module in modules:
+                parts = module.split(".")
+                if parts[0] != "fluxfarm" or len(parts) < 2 or parts[1] in (room, "errors"):
+                    continue
+                if parts[1] not in SERVICE[room]:
+                    breaches.append(f"{place}: {module}")
+    return breaches
+
+
+def test_engine_includes_follow_the_arrows() -> None:
+    assert engine_breaches(ROOT / "engine" / "src", ROOT / "engine" / "apps") == []
+
+
+def test_service_imports_follow_the_arrows() -> None:
+    assert service_breaches(ROOT / "service" / "src" / "fluxfarm") == []
+
+
+def test_forbidden_includes_and_imports_are_found(tmp_path: Path) -> None:
+    engine = {
+        "math/a.h": '#include "film/film.h"\n',
+        "film/b.h": '#include <embree3/rtcore.h>\n#include "math/vec.h"\n',
+        "io/c.cpp": '#include "scene/scene.h"\n#include "scene/description.h"\n',
+        "worker/d.cpp": "#include <fluxfarm/v1/engine.pb.h>\n",
+        "emitters/e.h": '#include "materials/bsdf.h"\n',
+    }
+    for name, text in engine.items():
+        (tmp_path / "src" / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / "src" / name).write_text(text)
+    (tmp_path / "apps").mkdir()
+    (tmp_path / "apps" / "f.cpp").write_text('#include "worker/plan.h"\n#include <pugixml.hpp>\n')
+    assert engine_breaches(tmp_path / "src", tmp_path / "apps") == [
+        "apps/f.cpp: pugixml.hpp",
+        "emitters/e.h: materials/bsdf.h",
+        "film/b.h: embree3/rtcore.h",
+        "io/c.cpp: scene/scene.h",
+        "math/a.h: film/film.h",
+        "worker/d.cpp: fluxfarm/v1/engine.pb.h",
+    ]
+    (tmp_path / "service" / "domain").mkdir(parents=True)
+    (tmp_path / "service" / "domain" / "job.py").write_text(
+        "from fluxfarm.adapters import blobs\nimport fluxfarm.errors\n"
+    )
+    assert service_breaches(tmp_path / "service") == ["domain/job.py: fluxfarm.adapters"]

@@ -1,0 +1,118 @@
+"""Bad scenes through the real service and engine: each fails its own job with one clear reason, and nothing else."""
+
+import signal
+import struct
+from collections.abc import Iterator
+
+import pytest
+from farm import Farm
+
+FILM = '<film type="hdrfilm"><integer name="width" value="8"/><integer name="height" value="8"/></film>'
+SENSOR = f'<sensor type="perspective">{FILM}</sensor>'
+LAMP = '<emitter type="constant"><rgb name="radiance" value="1, 1, 1"/></emitter>'
+
+
+def scene(*parts: str) -> str:
+    return '<scene version="3.0.0">\n' + "\n".join(parts) + "\n</scene>\n"
+
+
+def ply_shape(name: str) -> str:
+    return f'<shape type="ply"><string name="filename" value="{name}"/></shape>'
+
+
+def ascii_ply(vertices: list[str], faces: list[str], claimed: int | None = None) -> bytes:
+    head = f"ply\nformat ascii 1.0\nelement vertex {claimed or len(vertices)}\n"
+    head += "property float x\nproperty float y\nproperty float z\n"
+    head += f"element face {len(faces)}\nproperty list uchar int vertex_indices\nend_header\n"
+    return (head + "".join(line + "\n" for line in vertices + faces)).encode()
+
+
+TRIANGLE = ["0 0 0", "1 0 0", "0 1 0"]
+BINARY_HEAD = (
+    b"ply\nformat binary_little_endian 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+    b"element face 1\nproperty list uchar int vertex_indices\nend_header\n"
+)
+NAN_PLY = BINARY_HEAD + struct.pack("<9fB3i", 0, 0, 0, 1, float("nan"), 0, 0, 1, 0, 3, 0, 1, 2)
+BOMB = '<!DOCTYPE s [<!ENTITY a "aaaaaaaa"><!ENTITY b "&a;&a;&a;&a;">]>' + scene(SENSOR, LAMP)
+
+# name, files beside the scene, scene text, words that the reason must have
+CASES = [
+    ("malformed XML", {}, '<scene version="3.0.0">\n<sensor', ["scene.xml"]),
+    ("unknown plugin", {}, scene(SENSOR, LAMP, '<shape type="torus"/>'), ["scene.xml:4", "torus"]),
+    (
+        "unknown parameter",
+        {},
+        scene(SENSOR, LAMP, '<shape type="sphere"><float name="raduis" value="1"/></shape>'),
+        ["scene.xml:4", "raduis"],
+    ),
+    ("missing file", {}, scene(SENSOR, LAMP, ply_shape("none.ply")), ["scene.xml:4", "none.ply"]),
+    ("path out of the bundle", {}, scene(SENSOR, LAMP, ply_shape("../../etc/passwd")), ["scene.xml:4", "passwd"]),
+    ("truncated PLY", {"a.ply": BINARY_HEAD + b"\0" * 7}, scene(SENSOR, LAMP, ply_shape("a.ply")), ["a.ply"]),
+    (
+        "lying PLY",
+        {"a.ply": ascii_ply(TRIANGLE, ["3 0 1 2"], 4_000_000_000)},
+        scene(SENSOR, LAMP, ply_shape("a.ply")),
+        ["a.ply"],
+    ),
+    (
+        "index out of range",
+        {"a.ply": ascii_ply(TRIANGLE, ["3 0 1 7"])},
+        scene(SENSOR, LAMP, ply_shape("a.ply")),
+        ["a.ply", "7"],
+    ),
+    ("NaN vertex", {"a.ply": NAN_PLY}, scene(SENSOR, LAMP, ply_shape("a.ply")), ["a.ply", "nan"]),
+    (
+        "only degenerate triangles",
+        {"a.ply": ascii_ply(["0 0 0"] * 3, ["3 0 1 2"])},
+        scene(SENSOR, LAMP, ply_shape("a.ply")),
+        ["a.ply"],
+    ),
+    ("no sensor", {}, scene(LAMP), ["sensor"]),
+    (
+        "size 0",
+        {},
+        scene(SENSOR.replace('"width" value="8"', '"width" value="0"'), LAMP),
+        ["scene.xml:2", "width", "0"],
+    ),
+    ("huge size", {}, scene(SENSOR.replace('value="8"', 'value="1000000"'), LAMP), ["scene.xml:2", "1000000"]),
+    ("deep nesting", {}, scene('<bsdf type="twosided">' * 100_000), ["scene.xml"]),
+    ("entity bomb", {}, BOMB, ["scene.xml"]),
+]
+
+
+@pytest.fixture(scope="module")
+def farm(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Farm]:
+    """One service for all cases: it must outlive every one of them."""
+    farm = Farm(tmp_path_factory.mktemp("farm"))
+    yield farm
+    farm.service.end(signal.SIGTERM)
+
+
+def submit(farm: Farm, text: str, files: dict[str, bytes]) -> str:
+    uploaded = {name: farm.client.upload(content) for name, content in {"scene.xml": text, **files}.items()}
+    body = {"scene": {"entry": "scene.xml", "files": uploaded}, "goal": {"spp": 1}}
+    reply = farm.client.http.post("/v1/jobs", json=body)
+    assert reply.status_code == 201, reply.text
+    return str(reply.json()["id"])
+
+
+@pytest.mark.parametrize(("name", "files", "text", "words"), CASES, ids=[case[0] for case in CASES])
+def test_bad_scene_fails_its_job_with_place_and_value(
+    farm: Farm, name: str, files: dict[str, bytes], text: str, words: list[str]
+) -> None:
+    job = farm.client.finish(submit(farm, text, files))
+    assert job["state"] == "FAILED", name
+    for word in words:
+        assert word in job["reason"], job["reason"]
+    workers = farm.client.http.get("/v1/workers").json()["workers"]
+    assert sum(worker["restarts"] for worker in workers) == 0, "the engine crashed"
+
+
+def test_scene_without_light_is_black_with_a_warning(farm: Farm) -> None:
+    job = farm.client.finish(submit(farm, scene(SENSOR, '<shape type="sphere"/>'), {}))
+    assert job["state"] == "SUCCEEDED"
+    assert any("light" in warning for warning in job["warnings"])
+
+
+def test_service_still_renders_after_all_of_them(farm: Farm) -> None:
+    farm.client.succeed(submit(farm, scene(SENSOR, LAMP, '<shape type="sphere"/>'), {}))
