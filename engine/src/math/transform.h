@@ -13,7 +13,7 @@ class Transform {
   using Matrix = std::array<std::array<double, 4>, 4>;
 
   Transform();  // identity
-  // Only affine matrices: the last row must be 0 0 0 1 (up to a common factor, which is divided out).
+  // Only affine matrices: the last row is 0 0 0 1.
   explicit Transform(const Matrix& matrix) : m_(matrix) {}
 
   static Transform translate(double x, double y, double z);

@@ -1,0 +1,102 @@
+// Camera geometry, which side of a surface shines and scatters, and what the census says.
+#include <gtest/gtest.h>
+
+#include "scene/scene.h"
+#include "support/scene_builder.h"
+
+namespace fluxfarm::testing {
+namespace {
+
+CameraDescription camera_of(float degrees, CameraDescription::FovAxis axis) {
+  CameraDescription camera;
+  camera.to_world = Transform::look_at({0, 0, 0}, {0, 0, 1}, {0, 1, 0});
+  camera.fov_degrees = degrees;
+  camera.fov_axis = axis;
+  return camera;
+}
+
+TEST(Camera, FieldOfViewIsMeasuredAlongItsAxis) {
+  using Axis = CameraDescription::FovAxis;
+  // 200 x 100 pixels, 90 degrees: the tangent of half the angle is one along the named axis.
+  const auto edge = [](Axis axis) { return Camera(camera_of(90, axis), 200, 100).ray(0, 50).direction; };
+  const auto slope = [](Vec3f d) { return std::fabs(d.x / d.z); };
+  EXPECT_NEAR(slope(edge(Axis::kX)), 1, 1e-5f);
+  EXPECT_NEAR(slope(edge(Axis::kY)), 2, 1e-5f);
+  EXPECT_NEAR(slope(edge(Axis::kSmaller)), 2, 1e-5f);
+  EXPECT_NEAR(slope(edge(Axis::kLarger)), 1, 1e-5f);
+  EXPECT_NEAR(slope(edge(Axis::kDiagonal)), 2 / std::sqrt(5.0f), 1e-5f);
+}
+
+TEST(Camera, FilmRunsFromTopLeftAndLeftIsPlusX) {
+  const Camera camera(camera_of(90, CameraDescription::FovAxis::kX), 100, 100);
+  const Vec3f top_left = camera.ray(0, 0).direction;
+  EXPECT_GT(top_left.x, 0);
+  EXPECT_GT(top_left.y, 0);
+  EXPECT_NEAR(camera.ray(50, 50).direction.z, 1, 1e-6f);
+}
+
+TEST(Camera, NearAndFarPlanesAreDistancesAlongTheAxis) {
+  CameraDescription description = camera_of(90, CameraDescription::FovAxis::kX);
+  description.near_clip = 2;
+  description.far_clip = 10;
+  const Camera camera(description, 100, 100);
+  const Ray ray = camera.ray(0, 50);
+  EXPECT_NEAR(camera.depth(ray.origin + ray.t_min * ray.direction), 2, 1e-5f);
+  EXPECT_NEAR(camera.depth(ray.origin + ray.t_max * ray.direction), 10, 1e-4f);
+}
+
+// The radiance of what the camera sees head-on: a square at z = 1 whose front looks towards the camera, or away.
+double radiance_seen(MaterialDescription material, float emitted, bool towards_camera) {
+  SceneBuilder scene;
+  const Transform turn = towards_camera ? Transform::rotate(0, 1, 0, 180) : Transform();
+  scene.shape(RectangleDescription{Transform::translate(0, 0, 1) * turn}, scene.add(material), emitted);
+  scene.emitter(ConstantEmitterDescription{Rgb{1.0f}});
+  scene.look({0, 0, 0}, {0, 0, 1});
+  return measure(scene.description(), 64).mean;
+}
+
+TEST(Sides, DiffuseIsBlackOnItsBackUnlessTwosided) {
+  EXPECT_NEAR(radiance_seen(DiffuseDescription{Rgb{0.5f}}, 0, true), 0.5, 1e-5);
+  EXPECT_EQ(radiance_seen(DiffuseDescription{Rgb{0.5f}}, 0, false), 0);
+  SceneBuilder scene;
+  const int front = scene.diffuse(0.25f), back = scene.diffuse(0.75f);
+  scene.shape(RectangleDescription{Transform::translate(0, 0, 1)}, scene.add(TwosidedDescription{front, back}));
+  scene.emitter(ConstantEmitterDescription{Rgb{1.0f}});
+  scene.look({0, 0, 0}, {0, 0, 1});
+  EXPECT_NEAR(measure(scene.description(), 64).mean, 0.75, 1e-5) << "the camera is behind: the back's material answers";
+}
+
+TEST(Sides, AreaEmittersShineFromTheirFrontOnly) {
+  EXPECT_NEAR(radiance_seen(DiffuseDescription{Rgb{0.0f}}, 3, true), 3, 1e-6);
+  EXPECT_EQ(radiance_seen(DiffuseDescription{Rgb{0.0f}}, 3, false), 0);
+}
+
+TEST(Sides, FlipNormalsSwapsFrontAndBack) {
+  SceneBuilder scene;
+  scene.shape(RectangleDescription{Transform::translate(0, 0, 1)}, scene.diffuse(0), 3, true);
+  scene.look({0, 0, 0}, {0, 0, 1});
+  EXPECT_NEAR(measure(scene.description(), 8).mean, 3, 1e-6);
+}
+
+TEST(Sides, GlassOfIndexOneIsNotThere) {
+  EXPECT_NEAR(radiance_seen(DielectricDescription{.eta = 1}, 0, true), 1, 1e-5);
+  EXPECT_NEAR(radiance_seen(DielectricDescription{.eta = 1}, 0, false), 1, 1e-5);
+}
+
+TEST(Census, CountsWhatIsThere) {
+  SceneBuilder builder;
+  builder.shape(cube(Transform()), builder.diffuse(0.5f));
+  builder.shape(SphereDescription{{0, 3, 0}, 1}, builder.diffuse(0), 2);
+  builder.emitter(PointEmitterDescription{{0, 9, 0}, Rgb{1.0f}});
+  builder.look({0, 0, -5}, {0, 0, 0});
+  const Scene scene(builder.description(), 1);
+  EXPECT_EQ(scene.census().shapes, 2u);
+  EXPECT_EQ(scene.census().triangles, 12u);
+  EXPECT_EQ(scene.census().area_emitters, 1u);
+  EXPECT_EQ(scene.census().point_emitters, 1u);
+  EXPECT_FALSE(scene.census().environment);
+  EXPECT_FALSE(scene.census().anisotropic_materials);
+}
+
+}  // namespace
+}  // namespace fluxfarm::testing
