@@ -12,6 +12,7 @@
 #include "commands.h"
 #include "io/exr.h"
 #include "io/png.h"
+#include "output_file.h"
 #include "scene_options.h"
 #include "support/error.h"
 #include "worker/build_id.h"
@@ -67,6 +68,10 @@ void write_report(const std::filesystem::path& path, const nlohmann::json& repor
 
 void render(const RenderOptions& options) {
   std::signal(SIGINT, interrupt);
+  OutputFile exr(options.exr);
+  std::optional<OutputFile> png, report;
+  if (!options.png.empty()) png.emplace(options.png);
+  if (!options.report.empty()) report.emplace(options.report);
   Stopwatch watch;
   const SceneDescription description = options.scene.read();
   const double load = watch.lap();
@@ -89,8 +94,8 @@ void render(const RenderOptions& options) {
   watch.lap();
 
   const Image image = result.film.image(settings.crop, {"", "", "path", engine_build_id(), options.seed});
-  write_exr(options.exr, image);
-  if (!options.png.empty()) write_png(options.png, image);
+  exr.commit([&](const std::filesystem::path& path) { write_exr(path, image); });
+  if (png) png->commit([&](const std::filesystem::path& path) { write_png(path, image); });
   const double write = watch.lap();
 
   std::vector<std::string> warnings = scene.warnings();
@@ -98,29 +103,29 @@ void render(const RenderOptions& options) {
     warnings.push_back(std::to_string(result.summary.non_finite_samples) + " samples were not finite and count as zero");
     std::fprintf(stderr, "warning: %s\n", warnings.back().c_str());
   }
-  if (options.report.empty()) return;
+  if (!report) return;
   nlohmann::json timeline = nlohmann::json::array();
   for (const TimelinePoint& point : result.timeline) {
     timeline.push_back({{"seconds", point.seconds}, {"spp", point.spp}, {"error", or_null(point.error)}});
   }
-  write_report(
-      options.report,
-      {{"engine", engine_build_id()},
-       {"integrator", "path"},
-       {"size", {film.width, film.height}},
-       {"threads", threads},
-       {"seed", options.seed},
-       {"seconds", {{"load", load}, {"build", build}, {"prepare", prepare}, {"render", result.seconds}, {"write", write}}},
-       {"spp", result.summary.max_samples},
-       {"samples", static_cast<std::uint64_t>(result.summary.max_samples) * static_cast<std::uint64_t>(settings.crop.pixels())},
-       {"rays", result.rays},
-       {"rays_per_second", static_cast<double>(result.rays) / result.seconds},
-       {"mean", result.summary.mean},
-       // Path tracing has no bias of its own; energy that it never sampled is not audited yet, so that is left open.
-       {"error", {{"noise", or_null(result.summary.error_noise)}, {"bias", 0.0}, {"unseen", nullptr}}},
-       {"timeline", timeline},
-       {"plan", nlohmann::json::parse(plan_json(scene))},
-       {"warnings", warnings}});
+  const nlohmann::json figures = {
+      {"engine", engine_build_id()},
+      {"integrator", "path"},
+      {"size", {film.width, film.height}},
+      {"threads", threads},
+      {"seed", options.seed},
+      {"seconds", {{"load", load}, {"build", build}, {"prepare", prepare}, {"render", result.seconds}, {"write", write}}},
+      {"spp", result.summary.max_samples},
+      {"samples", static_cast<std::uint64_t>(result.summary.max_samples) * static_cast<std::uint64_t>(settings.crop.pixels())},
+      {"rays", result.rays},
+      {"rays_per_second", static_cast<double>(result.rays) / result.seconds},
+      {"mean", result.summary.mean},
+      // Path tracing has no bias of its own; energy that it never sampled is not audited yet, so that is left open.
+      {"error", {{"noise", or_null(result.summary.error_noise)}, {"bias", 0.0}, {"unseen", nullptr}}},
+      {"timeline", timeline},
+      {"plan", nlohmann::json::parse(plan_json(scene))},
+      {"warnings", warnings}};
+  report->commit([&](const std::filesystem::path& path) { write_report(path, figures); });
 }
 
 }  // namespace
