@@ -32,7 +32,7 @@ class ReportOut(BaseModel):
     id: str
     state: JobState
     integrator: str | None
-    goal: dict[str, float | None]
+    goal: dict[str, int | float | None]
     samples: int = Field(description="Camera samples, over all pixels.")
     rays: int
     rays_per_second: float | None

@@ -162,7 +162,7 @@ class JobOut(BaseModel):
     size: dict[str, int] | None
     crop: dict[str, int] | None
     integrator: str | None
-    goal: dict[str, float] | None
+    goal: dict[str, int | float] | None
     limits: dict[str, float]
     priority: int
     seed: int
@@ -241,6 +241,6 @@ def iso_time(unix_s: float) -> str:
     return datetime.fromtimestamp(unix_s, UTC).isoformat(timespec="milliseconds").replace("+00:00", "Z")
 
 
-def _present(rel_error: float | None, spp: int | None, seconds: float | None) -> dict[str, float]:
+def _present(rel_error: float | None, spp: int | None, seconds: float | None) -> dict[str, int | float]:
     named = {"rel_error": rel_error, "spp": spp, "seconds": seconds}
     return {name: value for name, value in named.items() if value is not None}
