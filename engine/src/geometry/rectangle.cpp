@@ -3,15 +3,6 @@
 #include "geometry/spherical_rectangle.h"
 
 namespace fluxfarm {
-namespace {
-
-// Below this ratio of area to squared distance, area sampling has as little variance and costs less; measured on cornell-box.
-constexpr float kSolidAngleFrom = 0.25f;
-// In the plane of the rectangle the solid angle vanishes and its closed form loses all digits.
-constexpr float kMinHeight = 1e-3f;
-
-}  // namespace
-
 Rectangle::Rectangle(Vec3f corner, Vec3f edge_u, Vec3f edge_v, bool flipped)
     : corner_(corner), edge_u_(edge_u), edge_v_(edge_v), length_u_(length(edge_u)), length_v_(length(edge_v)) {
   const Vec3f n = cross(edge_u, edge_v);
@@ -31,10 +22,7 @@ SurfacePoint Rectangle::surface_point(const Ray&, const Hit& hit) const {
 }
 
 bool Rectangle::samples_solid_angle(Vec3f reference) const {
-  if (!right_angled_) return false;
-  const Vec3f d = reference - (corner_ + 0.5f * (edge_u_ + edge_v_));
-  const float height = dot(d, normal_);
-  return area_ > kSolidAngleFrom * length_squared(d) && height * height > kMinHeight * kMinHeight * area_;
+  return right_angled_ && looks_large(area_, corner_ + 0.5f * (edge_u_ + edge_v_), normal_, reference);
 }
 
 std::optional<ShapeSample> Rectangle::sample(Vec3f reference, Vec2f u) const {

@@ -16,10 +16,11 @@ namespace fluxfarm {
 // A point of a surface chosen as seen from a reference point.
 struct ShapeSample {
   Vec3f position;
-  Vec3f normal;               // unit, front side
-  Vec3f wi;                   // unit, from the reference point to `position`
-  float distance = 0;         // m
-  float pdf_solid_angle = 0;  // of wi, at the reference point, sr^-1
+  Vec3f normal;                 // unit, front side
+  Vec3f wi;                     // unit, from the reference point to `position`
+  float distance = 0;           // m
+  float pdf_solid_angle = 0;    // of wi, at the reference point, sr^-1
+  std::uint32_t primitive = 0;  // triangle of the mesh; 0 for other shapes
 };
 
 class Shape {
@@ -42,6 +43,16 @@ class Shape {
   virtual float area() const = 0;  // m^2
   virtual Bounds bounds() const = 0;
 };
+
+// Whether a flat light is sampled by solid angle: only when it looks large. Below this ratio of area to squared distance the solid
+// angle is close to proportional to area cos / distance^2 all over it, and sampling by area is as good and costs less; near the
+// plane of the light the solid angle vanishes and its closed forms lose their digits.
+inline bool looks_large(float area, Vec3f centre, Vec3f normal, Vec3f reference) {
+  constexpr float kFrom = 0.25f, kMinHeight = 1e-3f;
+  const Vec3f d = reference - centre;
+  const float height = dot(d, normal);
+  return area > kFrom * length_squared(d) && height * height > kMinHeight * kMinHeight * area;
+}
 
 // Density per solid angle of a point chosen with `pdf_area` (m^-2); 0 when the surface is seen edge-on.
 inline float to_solid_angle(float pdf_area, float distance, float cos_at_light) {

@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "geometry/spherical_triangle.h"
+
 namespace fluxfarm {
 
 TriangleMesh::TriangleMesh(Data data, bool flipped, bool emissive) : data_(std::move(data)), side_(flipped ? -1.0f : 1.0f) {
@@ -53,22 +55,35 @@ Vec3f TriangleMesh::tangent(const SurfacePoint&, const Hit& hit) const {
 
 std::optional<ShapeSample> TriangleMesh::sample(Vec3f reference, Vec2f u) const {
   const DiscreteDistribution::Choice choice = by_area_.sample(u.x);
-  const auto [a, b, c] = corners(static_cast<std::uint32_t>(choice.index));
-  // Uniform over the triangle.
+  const auto triangle = static_cast<std::uint32_t>(choice.index);
+  const auto [a, b, c] = corners(triangle);
+  const Vec3f cross_product = cross(b - a, c - a);
+  const float twice_area = length(cross_product);
+  const Vec3f normal = cross_product * (side_ / twice_area);
+  if (looks_large(0.5f * twice_area, (a + b + c) / 3, normal, reference)) {
+    const SphericalTriangle seen(a, b, c, reference);
+    const Vec3f wi = seen.sample({choice.u, u.y});
+    const float distance = dot(a - reference, normal) / dot(wi, normal);
+    if (!(distance > 0)) return std::nullopt;
+    return ShapeSample{reference + distance * wi, normal, wi, distance, choice.probability / seen.solid_angle(), triangle};
+  }
   const float root = std::sqrt(choice.u);
-  const float beta = root * (1 - u.y), gamma = root * u.y;
-  const Vec3f position = a + beta * (b - a) + gamma * (c - a);
-  const Vec3f normal = side_ * normalize(cross(b - a, c - a));
+  const Vec3f position = a + root * (1 - u.y) * (b - a) + root * u.y * (c - a);
   const Vec3f d = position - reference;
   const float distance = length(d);
   if (!(distance > 0)) return std::nullopt;
   const Vec3f wi = d / distance;
   const float pdf_solid_angle = to_solid_angle(1 / area_, distance, dot(normal, wi));
   if (!(pdf_solid_angle > 0)) return std::nullopt;
-  return ShapeSample{position, normal, wi, distance, pdf_solid_angle};
+  return ShapeSample{position, normal, wi, distance, pdf_solid_angle, triangle};
 }
 
-float TriangleMesh::pdf(Vec3f, const SurfacePoint& point, std::uint32_t, Vec3f wi, float distance) const {
+float TriangleMesh::pdf(Vec3f reference, const SurfacePoint& point, std::uint32_t primitive, Vec3f wi, float distance) const {
+  const auto [a, b, c] = corners(primitive);
+  const float area = 0.5f * length(cross(b - a, c - a));
+  if (looks_large(area, (a + b + c) / 3, point.geometric_normal, reference)) {
+    return by_area_.probability(primitive) / SphericalTriangle(a, b, c, reference).solid_angle();
+  }
   return to_solid_angle(1 / area_, distance, dot(point.geometric_normal, wi));
 }
 

@@ -1,4 +1,5 @@
-// Indexed triangle mesh. As a light: a triangle by area, then a point of it by area.
+// Indexed triangle mesh. As a light: a triangle by area, then a point of it by solid angle where the triangle looks large, else by
+// area.
 #pragma once
 
 #include <vector>

@@ -9,6 +9,7 @@
 #include "geometry/rectangle.h"
 #include "geometry/sphere.h"
 #include "geometry/spherical_rectangle.h"
+#include "geometry/spherical_triangle.h"
 #include "geometry/triangle_mesh.h"
 #include "support/chi_square.h"
 
@@ -34,6 +35,8 @@ std::vector<LightCase> cases() {
   add("rectangle far", std::make_unique<Rectangle>(Vec3f{-0.4f, -1, 3}, Vec3f{1, 0, 0}, Vec3f{0, 2, 0}, true), Vec3f{0, 0, 0});
   add("parallelogram", std::make_unique<Rectangle>(Vec3f{-0.4f, -1, 1}, Vec3f{1, 0, 0.2f}, Vec3f{0.7f, 2, 0}, true),
       Vec3f{0, 0, 0});
+  TriangleMesh::Data far_mesh{{{-1, -1, 6}, {1, -1, 6.3f}, {0, 1, 5.8f}, {1.5f, 1, 6}}, {}, {}, {0, 2, 1, 1, 2, 3}};
+  add("mesh far", std::make_unique<TriangleMesh>(far_mesh, false, true), Vec3f{0, 0, 0});
   TriangleMesh::Data mesh{{{-1, -1, 1}, {1, -1, 1.3f}, {0, 1, 0.8f}, {1.5f, 1, 1}}, {}, {}, {0, 2, 1, 1, 2, 3}};
   add("mesh", std::make_unique<TriangleMesh>(mesh, false, true), Vec3f{0, 0, 0});
   return result;
@@ -48,7 +51,7 @@ TEST(ShapeAsLight, SampleAndPdfTellTheSameDensity) {
       const auto s = c.shape->sample(c.reference, {uniform(generator), uniform(generator)});
       ASSERT_TRUE(s.has_value()) << c.name;
       EXPECT_NEAR(length(c.reference + s->distance * s->wi - s->position), 0, 1e-4f) << c.name;
-      const float pdf = c.shape->pdf(c.reference, {s->position, s->normal, s->normal}, 0, s->wi, s->distance);
+      const float pdf = c.shape->pdf(c.reference, {s->position, s->normal, s->normal}, s->primitive, s->wi, s->distance);
       EXPECT_NEAR(pdf / s->pdf_solid_angle, 1, 2e-3f) << c.name;
     }
   }
@@ -131,6 +134,24 @@ TEST(ShapeAsLight, TwinWithATiltedDensityIsRejected) {
   const std::vector<LightCase> all = cases();
   const double level = sidak_level(0.01, static_cast<int>(all.size()));
   for (const LightCase& c : all) EXPECT_LT(sampling_p_value(c, 0.9), level) << c.name;
+}
+
+TEST(SphericalTriangle, OctantOfTheSphereIsSampledUniformly) {
+  // Mean direction over the octant is (1/2, 1/2, 1/2): the integral of each coordinate is pi/4 over a solid angle of pi/2.
+  const SphericalTriangle octant({1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {});
+  EXPECT_NEAR(octant.solid_angle(), kPi / 2, 1e-5f);
+  Vec3f mean;
+  const int side = 256;
+  for (int i = 0; i < side; ++i) {
+    for (int j = 0; j < side; ++j) {
+      const Vec3f w = octant.sample({(static_cast<float>(i) + 0.5f) / side, (static_cast<float>(j) + 0.5f) / side});
+      EXPECT_NEAR(length(w), 1, 1e-4f);
+      mean += w / (side * side);
+    }
+  }
+  EXPECT_NEAR(mean.x, 0.5f, 1e-3f);
+  EXPECT_NEAR(mean.y, 0.5f, 1e-3f);
+  EXPECT_NEAR(mean.z, 0.5f, 1e-3f);
 }
 
 TEST(SphericalRectangle, SolidAngleOfTheOctantIsAnEighthOfTheSphere) {
