@@ -44,6 +44,12 @@ def test_every_test_that_the_readme_names_exists() -> None:
         assert (ROOT / name).exists(), name
 
 
+def test_every_link_of_a_page_leads_to_something() -> None:
+    for page in (file for file in tracked_files() if file.suffix == ".md"):
+        for target in re.findall(r"\]\(([^)#:\s]+)\)", page.read_text()):
+            assert (page.parent / target).exists(), f"{page.relative_to(ROOT)}: {target}"
+
+
 def test_every_scene_is_described() -> None:
     for scene in (ROOT / "scenes").iterdir():
         if scene.is_dir():
