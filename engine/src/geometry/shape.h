@@ -45,8 +45,9 @@ class Shape {
 };
 
 // Whether a flat light is sampled by solid angle: only when it looks large. Below this ratio of area to squared distance the solid
-// angle is close to proportional to area cos / distance^2 all over it, and sampling by area is as good and costs less; near the
-// plane of the light the solid angle vanishes and its closed forms lose their digits.
+// angle is close to proportional to area cos / distance^2 all over it, and sampling by area costs less for little more variance
+// (the ratio is a choice, not measured); near the plane of the light the solid angle vanishes and its closed forms lose their
+// digits.
 inline bool looks_large(float area, Vec3f centre, Vec3f normal, Vec3f reference) {
   constexpr float kFrom = 0.25f, kMinHeight = 1e-3f;
   const Vec3f d = reference - centre;

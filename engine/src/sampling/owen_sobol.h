@@ -21,7 +21,8 @@ constexpr std::uint32_t reverse_bits(std::uint32_t v) {
   return ((v >> 1) & 0x55555555u) | ((v & 0x55555555u) << 1);
 }
 
-// Permutation in which each bit depends on the bits below it and on `seed`.
+// Permutation in which each bit depends on the bits below it and on `seed`. Between two bit reversals it is Owen's nested uniform
+// scrambling of a binary fraction; of an index, a shuffle that keeps aligned blocks of 2^k together.    [Burley20, section 3]
 constexpr std::uint32_t laine_karras_permutation(std::uint32_t v, std::uint32_t seed) {
   v ^= v * 0x3d20adeau;
   v += seed;
@@ -29,12 +30,6 @@ constexpr std::uint32_t laine_karras_permutation(std::uint32_t v, std::uint32_t 
   v ^= v * 0x05526c56u;
   v ^= v * 0x53a22864u;
   return v;
-}
-
-// Owen's nested uniform scrambling of `v` read as a binary fraction; of an index, a shuffle that keeps aligned blocks of 2^k
-// together.                                                                                   [Burley20, section 3]
-constexpr std::uint32_t nested_uniform_scramble(std::uint32_t v, std::uint32_t seed) {
-  return reverse_bits(laine_karras_permutation(reverse_bits(v), seed));
 }
 
 // Digits of the second Sobol dimension at `index`, least significant bit first (bit j is the digit of 2^-(j+1)).
