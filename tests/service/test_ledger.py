@@ -127,6 +127,24 @@ def test_revision_takes_its_tiles_and_the_film_before_out_of_the_ledger(ledger: 
     asyncio.run(scenario())
 
 
+def test_revision_without_a_film_keeps_the_film_before_and_its_own_tiles(ledger: SqliteLedger) -> None:
+    async def scenario() -> None:
+        job_id = await running_job(ledger)
+        for fence in (2, 3, 4, 5):
+            ledger.grant(fence, job_id)
+        await ledger.record_revision(3, job_id, REVISION)
+        later = [replace(commit(job_id, 2, tile), pass_index=1) for tile in (1, 0)]
+        await ledger.commit_tiles(later, [])
+        assert await ledger.record_revision(4, job_id, replace(REVISION, number=2, passes=2, film=None)) == []
+        unmerged = await ledger.unmerged(job_id)
+        assert unmerged.film == REVISION.film
+        assert [(tile.pass_index, tile.tile) for tile in unmerged.tiles] == [(1, 0), (1, 1)]
+        assert len(await ledger.record_revision(5, job_id, replace(REVISION, number=3, passes=3, film="g" * 64))) == 2
+        assert (await ledger.unmerged(job_id)).film == "g" * 64
+
+    asyncio.run(scenario())
+
+
 def test_failed_write_undoes_itself_alone(ledger: SqliteLedger) -> None:
     async def scenario() -> None:
         job_id = await running_job(ledger)

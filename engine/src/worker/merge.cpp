@@ -1,21 +1,30 @@
 #include "worker/merge.h"
 
+#include <algorithm>
+#include <array>
 #include <fstream>
-#include <iterator>
+#include <functional>
+#include <span>
 
 #include "io/exr.h"
 #include "io/png.h"
 #include "support/error.h"
+#include "support/parallel.h"
 #include "worker/build_id.h"
 #include "worker/codec.h"
 
 namespace fluxfarm {
 namespace {
 
+// A larger film (252 bytes a pixel) is read again rather than kept.
+constexpr std::int64_t kMostKeptPixels = 1 << 20;
+
 TileSums read_tile(const std::filesystem::path& path) {
-  std::ifstream in(path, std::ios::binary);
-  if (!in) throw ResourceError(path.string() + ": cannot read the tile");
-  const std::string bytes{std::istreambuf_iterator<char>(in), {}};
+  std::ifstream in(path, std::ios::binary | std::ios::ate);
+  std::string bytes(in ? static_cast<std::size_t>(in.tellg()) : 0, '\0');
+  in.seekg(0);
+  if (!in.read(bytes.data(), static_cast<std::streamsize>(bytes.size())))
+    throw ResourceError(path.string() + ": cannot read the tile");
   return decode_tile_sums(bytes, path.string());
 }
 
@@ -24,26 +33,63 @@ ImageInfo with_build(ImageInfo info) {
   return info;
 }
 
+void merge_tiles(Film& film, std::span<const std::filesystem::path> tiles) {
+  for (const std::filesystem::path& path : tiles) film.merge(read_tile(path));
+}
+
 template <typename Request>
-Film merged_film(const Request& request, PixelRect crop) {
-  Film film = request.film_in.empty() ? Film(request.width, request.height, crop) : Film::load(request.film_in);
-  for (const std::filesystem::path& path : request.tiles) film.merge(read_tile(path));
-  return film;
+Film first_film(const Request& request, PixelRect crop) {
+  return request.film_in.empty() ? Film(request.width, request.height, crop) : Film::load(request.film_in);
 }
 
 }  // namespace
 
-FilmSummary merge_pass(const MergePassRequest& request) {
-  const Film film = merged_film(request, request.crop);
-  if (!request.film_out.empty()) film.save(request.film_out);
+std::optional<PassMerger::KeptFilm> PassMerger::take(const MergePassRequest& request) {
+  const std::lock_guard lock(mutex_);
+  // Tile files are named by job and content, so equal paths are equal tiles.
+  if (!kept_ || kept_->film_in != request.film_in || kept_->tiles.size() > request.tiles.size() ||
+      !std::equal(kept_->tiles.begin(), kept_->tiles.end(), request.tiles.begin())) {
+    return std::nullopt;
+  }
+  std::optional<KeptFilm> kept = std::move(kept_);
+  kept_.reset();
+  return kept;
+}
+
+FilmSummary PassMerger::merge(const MergePassRequest& request) {
+  std::optional<KeptFilm> kept = take(request);
+  const std::size_t merged = kept ? kept->tiles.size() : 0;
+  Film film = kept ? std::move(kept->film) : first_film(request, request.crop);
+  merge_tiles(film, std::span(request.tiles).subspan(merged));
+
   const Image image = film.image(film.crop(), with_build(request.info));
-  if (!request.exr_out.empty()) write_exr(request.exr_out, image);
-  if (!request.png_out.empty()) write_png(request.png_out, image);
-  return film.summary();
+  FilmSummary summary;
+  const std::array<std::function<void()>, 4> outputs = {
+      [&] {
+        if (!request.exr_out.empty()) write_exr(request.exr_out, image);
+      },
+      [&] {
+        if (!request.film_out.empty()) film.save(request.film_out);
+      },
+      [&] {
+        if (!request.png_out.empty()) write_png(request.png_out, image);
+      },
+      [&] { summary = film.summary(); },
+  };
+  // At the end of a job nothing else is left to do, and its owner waits.
+  parallel_for(outputs.size(), 2, [&](std::size_t index, int) { outputs[index](); });
+
+  // The request after a film file begins with that file, under a name that is not known here.
+  if (request.film_out.empty() && request.crop.pixels() <= kMostKeptPixels) {
+    const std::lock_guard lock(mutex_);
+    kept_ = KeptFilm{request.film_in, request.tiles, std::move(film)};
+  }
+  return summary;
 }
 
 void write_tile(const WriteTileRequest& request) {
-  const Film film = merged_film(request, request.rect);
+  Film film = first_film(request, request.rect);
+  merge_tiles(film, request.tiles);
   write_exr(request.exr_out, film.image(request.rect, with_build(request.info)));
 }
 

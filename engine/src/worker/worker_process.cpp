@@ -115,7 +115,7 @@ class Worker {
     });
   }
   void handle(std::uint64_t id, MergePassRequest request) {
-    start(id, [request = std::move(request)]() -> ReplyBody { return PassMergedReply{merge_pass(request)}; });
+    start(id, [this, request = std::move(request)]() -> ReplyBody { return PassMergedReply{merger_.merge(request)}; });
   }
   void handle(std::uint64_t id, WriteTileRequest request) {
     start(id, [request = std::move(request)]() -> ReplyBody {
@@ -211,6 +211,7 @@ class Worker {
   FrameSocket socket_;
   int threads_;
   SceneStore scenes_;
+  PassMerger merger_;
   JobQueue jobs_;
   std::mutex running_mutex_;
   std::map<std::uint64_t, std::shared_ptr<Running>> running_;

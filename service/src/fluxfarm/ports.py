@@ -124,7 +124,7 @@ class Ledger(Protocol):
         """Count stored tiles whose fence is alive, then end the leases `ended`; tells which tiles were taken."""
 
     async def record_revision(self, fence: int, job_id: str, revision: Revision) -> list[str]:
-        """Record a revision and end its lease; returns digests of the tiles that its film contains."""
+        """Record a revision and end its lease; returns digests of the tiles that its film, if any, contains."""
 
     async def count_failure(self, job_id: str, crash: bool, running_s: float) -> int:
         """Count a crash or a lack of resources of a job; returns the count so far."""
@@ -145,7 +145,7 @@ class Ledger(Protocol):
         """Number of jobs by state."""
 
     async def unmerged(self, job_id: str) -> Unmerged:
-        """The job's passes and tiles that no revision contains yet."""
+        """The job's passes that no revision contains yet, its film, and the tiles that no film contains yet."""
 
     async def events_after(self, job_id: str, seq: int, limit: int) -> list[Event]:
         """Up to `limit` events after `seq`, in order."""

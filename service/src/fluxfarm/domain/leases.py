@@ -60,14 +60,14 @@ class RenderLease(Lease):
 
 @dataclass(frozen=True, slots=True)
 class MergeLease(Lease):
-    """Add finished tiles to the film and write the film, the image and its preview."""
+    """Add finished tiles to the film and write the image, its preview and, where a path is given, the film."""
 
     width: int
     height: int
     crop: PixelRect
     film_in: Path | None
     tiles: tuple[Path, ...]
-    film_out: Path
+    film_out: Path | None
     exr_out: Path
     png_out: Path
     info: ImageInfo

@@ -42,7 +42,7 @@ class SceneFacts:
 
 @dataclass(frozen=True, slots=True)
 class Revision:
-    """A published image. Digests name files of the job; `film` is gone once a newer revision is recorded."""
+    """A published image. Digests name files of the job; `film` is None where none was written, or a newer one is."""
 
     number: int
     passes: int
@@ -93,10 +93,12 @@ class StoredTile:
 
 @dataclass(frozen=True, slots=True)
 class Unmerged:
-    """What a restart needs of a job: samples per pixel in the newest revision, passes opened after it, their tiles."""
+    """What a restart needs of a job: samples per pixel in the newest revision, passes opened after it, the newest film
+    and the tiles that it does not contain, in the order of their passes."""
 
     merged_spp: int
     passes: tuple[tuple[int, SampleRange], ...]
+    film: str | None
     tiles: tuple[StoredTile, ...]
 
 

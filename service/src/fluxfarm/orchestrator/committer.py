@@ -1,13 +1,15 @@
 """Takes rendered tiles to disk and into the ledger, many at a time.
 
 The order for each tile is: bytes synced under their digest, then one transaction guarded by the lease's fence, then
-the news. What arrives while a batch is on its way goes with the next one, so batches grow with the load.
+the news. A batch waits a moment for company, unless a lease has ended: one transaction for many tiles costs little more
+than one for a single tile.
 """
 
 import asyncio
 import logging
 import time
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import dataclass, replace
 
 from fluxfarm.domain.records import TileCommit
@@ -17,6 +19,8 @@ log = logging.getLogger(__name__)
 
 MOST_TILES_IN_A_BATCH = 256
 MOST_BYTES_IN_A_BATCH = 64 << 20
+# How long a finished tile waits for others.
+GATHER_S = 0.5
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,6 +45,7 @@ class Committer:
         self._report = report
         self._waiting: list[tuple[TileCommit, bytes] | int] = []
         self._wake = asyncio.Event()
+        self._due = asyncio.Event()
         self.backlog_bytes = 0
 
     def add(self, commit: TileCommit, sums: bytes) -> None:
@@ -48,17 +53,23 @@ class Committer:
         self.backlog_bytes += len(sums)
         self._waiting.append((commit, sums))
         self._wake.set()
+        if self.backlog_bytes >= MOST_BYTES_IN_A_BATCH or len(self._waiting) >= MOST_TILES_IN_A_BATCH:
+            self._due.set()
 
     def end(self, fence: int) -> None:
         """Have a lease ended after all of its tiles that were added before."""
         self._waiting.append(fence)
         self._wake.set()
+        self._due.set()
 
     async def run(self) -> None:
         """Commit batches until cancelled."""
         while True:
             await self._wake.wait()
+            with suppress(TimeoutError):
+                await asyncio.wait_for(self._due.wait(), GATHER_S)
             self._wake.clear()
+            self._due.clear()
             while self._waiting:
                 await self._commit(self._take_batch())
 

@@ -131,21 +131,22 @@ class Dispatcher:
         return lease
 
     def _merge_lease(self, run: JobRun) -> MergeLease | None:
-        ready = run.mergeable()
+        now = time.monotonic()
+        ready = run.mergeable(now)
         if run.single_lease is not None or not ready or run.facts is None or run.grid is None:
             return None
-        fence, facts, newest = self.new_fence(), run.facts, run.newest
-        run.single_lease = fence
-        film = None if newest is None else newest.film
+        fence, facts = self.new_fence(), run.facts
+        run.begin_merge(fence, now)
+        tiles = run.loose_tiles + tuple(sha256 for work in ready for sha256 in work.tiles())
         return MergeLease(
             fence=fence,
             job_id=run.id,
             width=facts.width,
             height=facts.height,
             crop=run.grid.crop,
-            film_in=None if film is None else self._blobs.output(run.id, film),
-            tiles=tuple(self._blobs.tile(run.id, work.done[tile]) for work in ready for tile in sorted(work.done)),
-            film_out=self._blobs.scratch(run.id, f"{fence}.film"),
+            film_in=None if run.film is None else self._blobs.output(run.id, run.film),
+            tiles=tuple(self._blobs.tile(run.id, sha256) for sha256 in tiles),
+            film_out=self._blobs.scratch(run.id, f"{fence}.film") if run.wants_film(ready) else None,
             exr_out=self._blobs.scratch(run.id, f"{fence}.exr"),
             png_out=self._blobs.scratch(run.id, f"{fence}.png"),
             info=ImageInfo(run.id, run.request.bundle.digest(), facts.integrator, run.request.seed),

@@ -271,6 +271,7 @@ class Orchestrator:
         elif isinstance(outcome, Prepared):
             await self._on_prepared(run, outcome)
         elif isinstance(outcome, Merged):
+            run.end_merge(time.monotonic())
             self._background(self._publish(run, outcome))
         elif isinstance(outcome, LeaseLost):
             await self._on_fault(run, outcome.lease, FailureKind.INTERNAL if outcome.blamed else None, outcome.reason)
@@ -351,7 +352,7 @@ class Orchestrator:
         """In its own task, since syncing a film takes time; the result comes back through the inbox."""
         try:
             running_s = run.running_s(time.monotonic())
-            revision = await publish(self._ledger, self._blobs, merged, run.newest, running_s)
+            revision = await publish(self._ledger, self._blobs, merged, run.newest, run.film, running_s)
         except StaleLease as error:
             log.info("stale revision dropped", extra={"reason": str(error)})
         except OSError as error:
@@ -416,4 +417,4 @@ class Orchestrator:
 
 def _outputs(lease: MergeLease) -> list[Path]:
     """The files that a merge writes before they are adopted."""
-    return [lease.film_out, lease.exr_out, lease.png_out]
+    return [path for path in (lease.film_out, lease.exr_out, lease.png_out) if path is not None]

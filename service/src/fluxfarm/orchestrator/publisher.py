@@ -11,16 +11,17 @@ from fluxfarm.ports import BlobStore, Ledger
 
 
 async def publish(
-    ledger: Ledger, blobs: BlobStore, merged: Merged, before: Revision | None, running_s: float
+    ledger: Ledger, blobs: BlobStore, merged: Merged, before: Revision | None, film_before: str | None, running_s: float
 ) -> Revision:
     """Make one revision durable and visible; returns it.
 
-    Raises StaleLease if the job was stopped meanwhile, OSError if the disk refuses. The film before and the tiles that
-    are in the new film are removed at the end: nothing refers to them any more."""
+    Raises StaleLease if the job was stopped meanwhile, OSError if the disk refuses. If there is a new film, the film
+    before and the tiles that are in the new one are removed at the end: nothing refers to them any more."""
     lease = merged.lease
-    (film, _), (exr, exr_bytes), (png, _) = await asyncio.gather(
-        *(blobs.adopt(lease.job_id, path) for path in (lease.film_out, lease.exr_out, lease.png_out))
-    )
+    written = [path for path in (lease.exr_out, lease.png_out, lease.film_out) if path is not None]
+    adopted = await asyncio.gather(*(blobs.adopt(lease.job_id, path) for path in written))
+    (exr, exr_bytes), (png, _) = adopted[:2]
+    film = adopted[2][0] if len(adopted) > 2 else None
     revision = Revision(
         number=1 if before is None else before.number + 1,
         passes=lease.passes,
@@ -36,14 +37,14 @@ async def publish(
         film=film,
         at=time.time(),
     )
-    kept = set() if before is None else {before.exr, before.png, before.film}
+    kept = {film_before} if before is None else {film_before, before.exr, before.png}
     try:
         tiles = await ledger.record_revision(lease.fence, lease.job_id, revision)
     except StaleLease:
-        await blobs.drop([blobs.output(lease.job_id, sha256) for sha256 in (film, exr, png) if sha256 not in kept])
+        await blobs.drop([blobs.output(lease.job_id, sha256) for sha256, _ in adopted if sha256 not in kept])
         raise
     unused: list[Path] = [blobs.tile(lease.job_id, sha256) for sha256 in tiles]
-    if before is not None and before.film is not None and before.film != film:
-        unused.append(blobs.output(lease.job_id, before.film))
+    if film is not None and film_before is not None and film_before != film:
+        unused.append(blobs.output(lease.job_id, film_before))
     await blobs.drop(unused)
     return revision

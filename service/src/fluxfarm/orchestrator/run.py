@@ -14,11 +14,15 @@ from fluxfarm.domain.records import JobRecord, Revision, SceneFacts, Unmerged
 from fluxfarm.domain.schedule import SampleRange
 from fluxfarm.domain.tiles import TileGrid
 
-# Passes that may be under way before the oldest of them is merged.
+# Passes that may be under way at a time.
 MOST_OPEN_PASSES = 4
 MOST_TILES_IN_A_LEASE = 512
+# Passes whose tiles are kept before a film takes their place: a film is as much to write and read as two passes.
+PASSES_TO_A_FILM = 8
 # Weight of the newest tile in the running mean of the cost.
 COST_WEIGHT = 0.2
+# After a merge that took a second, the next one waits this many seconds: watching costs a small, fixed share.
+MERGE_PAUSE = 16.0
 
 
 @dataclass(slots=True)
@@ -35,6 +39,10 @@ class PassRun:
     def complete(self) -> bool:
         """Whether every tile is committed."""
         return not self.pending and not self.leased
+
+    def tiles(self) -> tuple[str, ...]:
+        """Digests of the committed tiles, in the order of merging."""
+        return tuple(self.done[tile] for tile in sorted(self.done))
 
 
 class JobRun:
@@ -58,11 +66,17 @@ class JobRun:
         self._opened = record.passes_opened
         self._merged_passes = 0 if record.newest is None else record.newest.passes
         self._merged_spp = 0
+        # The newest film and, in the order of merging, the tiles of passes that are merged but not in it.
+        self.film: str | None = None
+        self.loose_tiles: tuple[str, ...] = ()
+        self._loose_passes = 0
         self._newest = record.newest
         self._stop: Stop | None = None
         self._running_before = record.running_s
         self._running_since: float | None = None
         self._cost_s: float | None = None
+        self._merge_began = 0.0
+        self._next_merge = 0.0
 
     # ---- verbs ----
 
@@ -74,7 +88,10 @@ class JobRun:
         self._running_since = now
         if unmerged is None:
             return
-        self._merged_spp = unmerged.merged_spp
+        self._merged_spp, self.film = unmerged.merged_spp, unmerged.film
+        loose = [tile for tile in unmerged.tiles if tile.pass_index < self._merged_passes]
+        self.loose_tiles = tuple(tile.sha256 for tile in loose)
+        self._loose_passes = len({tile.pass_index for tile in loose})
         for index, samples in unmerged.passes:
             opened = PassRun(index, samples, deque())
             opened.done = {tile.tile: tile.sha256 for tile in unmerged.tiles if tile.pass_index == index}
@@ -86,7 +103,8 @@ class JobRun:
         if self._stop is not None or self._grid is None or any(p.pending for p in self._passes.values()):
             return None
         barriers = has_barriers(self._goal, self.request.limits)
-        if len(self._passes) >= (1 if barriers else MOST_OPEN_PASSES):
+        open_passes = len(self._passes) if barriers else sum(not p.complete for p in self._passes.values())
+        if open_passes >= (1 if barriers else MOST_OPEN_PASSES):
             return None
         spp = max((p.samples.end for p in self._passes.values()), default=self._merged_spp)
         error = None if self._newest is None else self._newest.error_noise
@@ -152,11 +170,25 @@ class JobRun:
         work.leased.difference_update(undone)
         work.pending.extendleft(reversed(undone))
 
+    def begin_merge(self, fence: int, now: float) -> None:
+        """The mergeable passes are leased to an engine process."""
+        self.single_lease = fence
+        self._merge_began = now
+
+    def end_merge(self, now: float) -> None:
+        """The engine process has merged; the revision is still to be stored."""
+        self._next_merge = now + MERGE_PAUSE * (now - self._merge_began)
+
     def publish(self, revision: Revision) -> None:
         """A revision contains all passes before `revision.passes`."""
         self.single_lease = None
-        for index in [index for index in self._passes if index < revision.passes]:
-            self._merged_spp = self._passes.pop(index).samples.end
+        for index in sorted(index for index in self._passes if index < revision.passes):
+            merged = self._passes.pop(index)
+            self._merged_spp = merged.samples.end
+            self._loose_passes += 1
+            self.loose_tiles += merged.tiles()
+        if revision.film is not None:
+            self.film, self.loose_tiles, self._loose_passes = revision.film, (), 0
         self._merged_passes = revision.passes
         self._newest = revision
 
@@ -166,12 +198,19 @@ class JobRun:
         """Seconds spent in RUNNING so far, over all restarts and pauses."""
         return self._running_before + (0.0 if self._running_since is None else now - self._running_since)
 
-    def mergeable(self) -> list[PassRun]:
-        """Complete passes that come next in the film, oldest first."""
+    def mergeable(self, now: float) -> list[PassRun]:
+        """Complete passes that come next in the film, oldest first; none while the newest revision is fresh, unless the
+        job waits for them."""
         ready: list[PassRun] = []
+        if not self._is_last_merge and not has_barriers(self._goal, self.request.limits) and now < self._next_merge:
+            return ready
         while (work := self._passes.get(self._merged_passes + len(ready))) is not None and work.complete:
             ready.append(work)
         return ready
+
+    def wants_film(self, ready: list[PassRun]) -> bool:
+        """Whether the merge of `ready` should write a film."""
+        return self._is_last_merge or self._loose_passes + len(ready) >= PASSES_TO_A_FILM
 
     def has_lease(self, fence: int) -> bool:
         """Whether a lease of this run is still open; those of a run before a pause are not."""
@@ -215,6 +254,10 @@ class JobRun:
             )
             extra += max(0, samples - committed * lease.samples.count)
         return extra
+
+    @property
+    def _is_last_merge(self) -> bool:
+        return self._stop is not None and self.all_passes_complete
 
     def _lease_size(self, work: PassRun, threads: int, workers: int, target_s: float) -> int:
         """Number of tiles for one lease; small while the cost of a tile is unknown."""

@@ -22,8 +22,8 @@ async def tile_lease(
         raise TileOutsideFrame(
             f"tile {column}-{row}: expected a column below {record.grid.columns} and a row below {record.grid.rows}"
         )
-    stored = sorted((t.pass_index, t.sha256) for t in (await ledger.unmerged(job_id)).tiles if t.tile == tile)
-    film = None if record.newest is None else record.newest.film
+    unmerged = await ledger.unmerged(job_id)
+    film, stored = unmerged.film, [t.sha256 for t in unmerged.tiles if t.tile == tile]
     if film is None and not stored:
         raise NotYetThere(f"tile {column}-{row} of job {job_id}: not rendered yet")
     return WriteTileLease(
@@ -33,7 +33,7 @@ async def tile_lease(
         height=record.facts.height,
         rect=record.grid.rect(tile),
         film_in=None if film is None else blobs.output(job_id, film),
-        tiles=tuple(blobs.tile(job_id, sha256) for _, sha256 in stored),
+        tiles=tuple(blobs.tile(job_id, sha256) for sha256 in stored),
         exr_out=blobs.scratch(job_id, f"{uuid.uuid4().hex}.exr"),
         info=ImageInfo(job_id, record.request.bundle.digest(), record.facts.integrator, record.request.seed),
     )

@@ -176,7 +176,7 @@ def _merge_pass(work: MergeLease) -> pb.MergePass:
         crop=_rect(work.crop),
         film_in=_path(work.film_in),
         tiles=[pb.TileFile(path=str(path)) for path in work.tiles],
-        film_out=str(work.film_out),
+        film_out=_path(work.film_out),
         exr_out=str(work.exr_out),
         png_out=str(work.png_out),
         info=_info(work.info),

@@ -191,13 +191,17 @@ def _count_tiles(connection: Connection, job_id: str, taken: Sequence[TileCommit
 
 
 def record_revision(connection: Connection, fence: int, job_id: str, revision: Revision) -> list[str]:
-    """Publish a revision; forget the tiles and the film that it contains and return the digests of those tiles."""
+    """Publish a revision; if it has a film, forget the film before and the tiles that the new one contains.
+
+    Returns the digests of those tiles."""
     require_lease(connection, fence, job_id)
-    connection.execute(update(revisions).where(revisions.c.job_id == job_id).values(film=None))
+    merged: list[str] = []
+    if revision.film is not None:
+        connection.execute(update(revisions).where(revisions.c.job_id == job_id).values(film=None))
+        contained = (tiles.c.job_id == job_id) & (tiles.c.pass_index < revision.passes)
+        merged = list(connection.execute(select(tiles.c.sha256).where(contained)).scalars())
+        connection.execute(delete(tiles).where(contained))
     connection.execute(insert(revisions).values(rows.revision_to_row(job_id, revision)))
-    contained = (tiles.c.job_id == job_id) & (tiles.c.pass_index < revision.passes)
-    merged = list(connection.execute(select(tiles.c.sha256).where(contained)).scalars())
-    connection.execute(delete(tiles).where(contained))
     connection.execute(update(jobs).where(jobs.c.id == job_id).values(running_s=revision.running_s))
     data = {
         "revision": revision.number,

@@ -92,13 +92,17 @@ class SqliteLedger:
                 .where(passes.c.job_id == job_id, passes.c.pass_index >= first)
                 .order_by(passes.c.pass_index)
             )
-            stored = connection.execute(select(tiles).where(tiles.c.job_id == job_id))
+            film = select(revisions.c.film).where(revisions.c.job_id == job_id, revisions.c.film.is_not(None))
+            stored = connection.execute(
+                select(tiles).where(tiles.c.job_id == job_id).order_by(tiles.c.pass_index, tiles.c.tile)
+            )
             merged_spp = select(func.coalesce(func.max(passes.c.sample_end), 0)).where(
                 passes.c.job_id == job_id, passes.c.pass_index < first
             )
             return Unmerged(
                 connection.execute(merged_spp).scalar_one(),
                 tuple((row.pass_index, SampleRange(row.sample_begin, row.sample_end)) for row in opened),
+                connection.execute(film).scalar(),
                 tuple(StoredTile(row.pass_index, row.tile, row.sha256) for row in stored),
             )
 
