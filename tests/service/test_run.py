@@ -39,8 +39,7 @@ def finish_pass(run: JobRun, fence: int) -> PassRun:
 
 def merge(run: JobRun, began: float, ended: float, film: str | None = None) -> None:
     passes = run.mergeable(began)[-1].index + 1
-    run.begin_merge(1000, began)
-    run.end_merge(ended)
+    run.end_merge(ended - began, ended)
     run.publish(replace(REVISION, passes=passes, film=film))
 
 

@@ -28,6 +28,9 @@ struct FilmSummary {
   std::uint32_t min_samples = 0, max_samples = 0;
   // sqrt of the estimated relMSE, mean over pixels and channels of Var(I) / (I^2 + 1e-2); absent below two replicates.
   std::optional<double> error_noise;
+  // Upper bound of the true sqrt(relMSE) at the confidence that this look may spend (film/error_bound.h); absent when the pixels
+  // differ in their samples or their number is not that of a look.
+  std::optional<double> error_bound;
   double mean[3] = {0, 0, 0};
   std::uint64_t non_finite_samples = 0;
 };

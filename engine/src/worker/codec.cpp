@@ -103,10 +103,12 @@ void encode(const PassMergedReply& r, v1::Reply& out) {
   m.set_min_samples(r.summary.min_samples);
   m.set_max_samples(r.summary.max_samples);
   if (r.summary.error_noise) m.set_error_noise(*r.summary.error_noise);
+  if (r.summary.error_bound) m.set_error_bound(*r.summary.error_bound);
   m.set_mean_r(r.summary.mean[0]);
   m.set_mean_g(r.summary.mean[1]);
   m.set_mean_b(r.summary.mean[2]);
   m.set_non_finite_samples(r.summary.non_finite_samples);
+  m.set_seconds(r.seconds);
 }
 
 void encode(const TileWrittenReply&, v1::Reply& out) { out.mutable_tile_written(); }

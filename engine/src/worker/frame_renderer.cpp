@@ -15,9 +15,6 @@ using Clock = std::chrono::steady_clock;
 
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
-// Below this many samples (two in each replicate) the spread of the replicates says too little to stop on.
-constexpr std::uint32_t kMinSamplesForError = 16;
-
 // The next pass, or nothing when the goal is reached. With a time goal the pass is cut to what fits, by the rate so far.
 std::optional<SampleRange> choose_pass(const Goal& goal, const std::vector<TimelinePoint>& timeline) {
   if (timeline.empty()) return next_pass(0, goal.spp.value_or(1));
@@ -26,7 +23,7 @@ std::optional<SampleRange> choose_pass(const Goal& goal, const std::vector<Timel
     if (now.spp >= *goal.spp) return std::nullopt;
     return next_pass(now.spp, *goal.spp);
   }
-  if (goal.rel_error && now.spp >= kMinSamplesForError && now.error && *now.error <= *goal.rel_error) return std::nullopt;
+  if (goal.rel_error && now.error_bound && *now.error_bound <= *goal.rel_error) return std::nullopt;
   SampleRange pass = next_pass(now.spp, std::numeric_limits<std::uint32_t>::max());
   if (goal.seconds) {
     const double left = *goal.seconds - now.seconds;
@@ -53,7 +50,7 @@ FrameResult render_frame(const Scene& scene, const Integrator& integrator, const
       result.film.merge(render_tile(scene, integrator, task, queries[static_cast<std::size_t>(thread)], cancelled));
     });
     result.summary = result.film.summary();
-    result.timeline.push_back({seconds_since(start), pass->end, result.summary.error_noise});
+    result.timeline.push_back({seconds_since(start), pass->end, result.summary.error_noise, result.summary.error_bound});
     if (after_pass) after_pass(result.timeline.back());
   }
   result.seconds = seconds_since(start);

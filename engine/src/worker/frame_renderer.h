@@ -16,7 +16,7 @@ namespace fluxfarm {
 struct Goal {
   std::optional<std::uint32_t> spp;
   std::optional<double> seconds;    // wall time of the passes
-  std::optional<double> rel_error;  // estimated sqrt(relMSE) of the noise
+  std::optional<double> rel_error;  // sqrt(relMSE), with 95 % confidence (film/error_bound.h)
 };
 
 struct FrameSettings {
@@ -31,7 +31,8 @@ struct FrameSettings {
 struct TimelinePoint {
   double seconds = 0;  // since the first pass began
   std::uint32_t spp = 0;
-  std::optional<double> error;  // FilmSummary::error_noise
+  std::optional<double> error;        // FilmSummary::error_noise
+  std::optional<double> error_bound;  // FilmSummary::error_bound
 };
 
 struct FrameResult {

@@ -100,6 +100,7 @@ struct TilesDoneReply {};
 
 struct PassMergedReply {
   FilmSummary summary;
+  double seconds = 0;
 };
 
 struct TileWrittenReply {};

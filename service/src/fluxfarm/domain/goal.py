@@ -2,7 +2,7 @@
 
 A sample goal fixes all passes in advance. The other two decide at pass barriers, from what the finished passes
 measured: a time goal from the clock, an error goal from the merged sums alone, so that the same job always stops at
-the same sample.
+the same sample. The engine bounds the error with a confidence that it spends over the doublings of the samples.
 """
 
 from dataclasses import dataclass
@@ -10,8 +10,6 @@ from dataclasses import dataclass
 from fluxfarm.domain.schedule import SampleRange, next_range, pass_samples
 
 DEFAULT_SPP = 64
-# The spread of the replicates says little before each of the eight has two samples.
-LEAST_SPP_FOR_ERROR = 16
 # An error goal that is never reached has to end somewhere.
 ERROR_GOAL_CEILING_SPP = 65_536
 # A time goal stops when less than this share of the next sample would fit.
@@ -37,12 +35,13 @@ class Limits:
 
 @dataclass(frozen=True, slots=True)
 class Measured:
-    """What is known at a pass barrier."""
+    """What is known at a pass barrier. `error_bound` holds with 95 % over a whole job; None if none is due."""
 
     passes: int
     spp: int
     running_s: float
     error_noise: float | None
+    error_bound: float | None
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,12 +74,7 @@ def ceiling_spp(goal: Goal, limits: Limits) -> int | None:
 
 def next_pass(goal: Goal, limits: Limits, measured: Measured) -> SampleRange | Stop:
     """The samples of the next pass, or Stop. `goal` is settled."""
-    if (
-        goal.rel_error is not None
-        and measured.error_noise is not None
-        and measured.spp >= LEAST_SPP_FOR_ERROR
-        and measured.error_noise <= goal.rel_error
-    ):
+    if goal.rel_error is not None and measured.error_bound is not None and measured.error_bound <= goal.rel_error:
         return Stop()
     ceiling = ceiling_spp(goal, limits)
     if ceiling is not None and measured.spp >= ceiling:

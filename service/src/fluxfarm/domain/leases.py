@@ -139,8 +139,10 @@ class Merged:
     min_samples: int
     max_samples: int
     error_noise: float | None
+    error_bound: float | None
     mean: tuple[float, float, float]
     non_finite_samples: int
+    seconds: float
 
 
 @dataclass(frozen=True, slots=True)

@@ -42,13 +42,16 @@ class SceneFacts:
 
 @dataclass(frozen=True, slots=True)
 class Revision:
-    """A published image. Digests name files of the job; `film` is None where none was written, or a newer one is."""
+    """A published image. Digests name files of the job; `film` is None where none was written, or a newer one is.
+
+    `error_bound` is the bound that may end a job with an error goal; None where no decision is due."""
 
     number: int
     passes: int
     min_samples: int
     max_samples: int
     error_noise: float | None
+    error_bound: float | None
     mean: tuple[float, float, float]
     non_finite_samples: int
     running_s: float

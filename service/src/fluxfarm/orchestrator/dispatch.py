@@ -131,12 +131,11 @@ class Dispatcher:
         return lease
 
     def _merge_lease(self, run: JobRun) -> MergeLease | None:
-        now = time.monotonic()
-        ready = run.mergeable(now)
+        ready = run.mergeable(time.monotonic())
         if run.single_lease is not None or not ready or run.facts is None or run.grid is None:
             return None
         fence, facts = self.new_fence(), run.facts
-        run.begin_merge(fence, now)
+        run.single_lease = fence
         tiles = run.loose_tiles + tuple(sha256 for work in ready for sha256 in work.tiles())
         return MergeLease(
             fence=fence,

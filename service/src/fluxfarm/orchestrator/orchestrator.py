@@ -271,7 +271,7 @@ class Orchestrator:
         elif isinstance(outcome, Prepared):
             await self._on_prepared(run, outcome)
         elif isinstance(outcome, Merged):
-            run.end_merge(time.monotonic())
+            run.end_merge(outcome.seconds, time.monotonic())
             self._background(self._publish(run, outcome))
         elif isinstance(outcome, LeaseLost):
             await self._on_fault(run, outcome.lease, FailureKind.INTERNAL if outcome.blamed else None, outcome.reason)

@@ -28,6 +28,7 @@ async def publish(
         min_samples=merged.min_samples,
         max_samples=merged.max_samples,
         error_noise=merged.error_noise,
+        error_bound=merged.error_bound,
         mean=merged.mean,
         non_finite_samples=merged.non_finite_samples,
         running_s=running_s,

@@ -75,7 +75,6 @@ class JobRun:
         self._running_before = record.running_s
         self._running_since: float | None = None
         self._cost_s: float | None = None
-        self._merge_began = 0.0
         self._next_merge = 0.0
 
     # ---- verbs ----
@@ -107,8 +106,8 @@ class JobRun:
         if open_passes >= (1 if barriers else MOST_OPEN_PASSES):
             return None
         spp = max((p.samples.end for p in self._passes.values()), default=self._merged_spp)
-        error = None if self._newest is None else self._newest.error_noise
-        measured = Measured(self._merged_passes + len(self._passes), spp, self.running_s(now), error)
+        error, bound = (None, None) if self._newest is None else (self._newest.error_noise, self._newest.error_bound)
+        measured = Measured(self._merged_passes + len(self._passes), spp, self.running_s(now), error, bound)
         samples = next_pass(self._goal, self.request.limits, measured)
         if isinstance(samples, Stop):
             self._stop = samples
@@ -170,14 +169,9 @@ class JobRun:
         work.leased.difference_update(undone)
         work.pending.extendleft(reversed(undone))
 
-    def begin_merge(self, fence: int, now: float) -> None:
-        """The mergeable passes are leased to an engine process."""
-        self.single_lease = fence
-        self._merge_began = now
-
-    def end_merge(self, now: float) -> None:
-        """The engine process has merged; the revision is still to be stored."""
-        self._next_merge = now + MERGE_PAUSE * (now - self._merge_began)
+    def end_merge(self, seconds: float, now: float) -> None:
+        """An engine process has merged for `seconds`; the revision is still to be stored."""
+        self._next_merge = now + MERGE_PAUSE * seconds
 
     def publish(self, revision: Revision) -> None:
         """A revision contains all passes before `revision.passes`."""

@@ -131,8 +131,10 @@ def outcome(work: Lease, reply: Reply) -> tuple[Outcome, bool]:
         return Prepared(work, _facts(body)), True
     if isinstance(work, MergeLease) and isinstance(body, pb.PassMerged):
         error = body.error_noise if body.HasField("error_noise") else None
+        bound = body.error_bound if body.HasField("error_bound") else None
         mean = (body.mean_r, body.mean_g, body.mean_b)
-        return Merged(work, body.min_samples, body.max_samples, error, mean, body.non_finite_samples), True
+        samples, failed = (body.min_samples, body.max_samples), body.non_finite_samples
+        return Merged(work, *samples, error, bound, mean, failed, body.seconds), True
     if isinstance(work, WriteTileLease) and isinstance(body, pb.TileWritten):
         return TileWritten(work), True
     raise ProtocolError(f"{type(body).__name__} does not answer a {type(work).__name__}")

@@ -82,6 +82,9 @@ MIGRATIONS: tuple[str, ...] = (
         PRIMARY KEY (job_id, seq)
     ) STRICT, WITHOUT ROWID;
     """,
+    """
+    ALTER TABLE revisions ADD COLUMN error_bound REAL
+    """,
 )
 
 metadata = MetaData()
@@ -113,6 +116,6 @@ revisions = _table(
     "job_id number",
     "job_id exr png film",
     "number passes min_samples max_samples non_finite_samples exr_bytes",
-    "error_noise mean_r mean_g mean_b running_s at",
+    "error_noise error_bound mean_r mean_g mean_b running_s at",
 )
 events = _table("events", "job_id seq", "job_id kind data", "seq", "at")
