@@ -1,4 +1,4 @@
-// Reads emitter plugins: area (inside a shape), point and constant (in the scene).
+// Reads emitter plugins: area (inside a shape), point, spot, directional and constant (in the scene).
 #pragma once
 
 #include "io/plugin_tree.h"

@@ -32,13 +32,17 @@ void check_unused_materials(const PluginNode& scene, const PluginsById& plugins,
   }
 }
 
+bool is_black(const PointEmitterDescription& point) { return point.intensity.is_black(); }
+bool is_black(const SpotEmitterDescription& spot) { return spot.intensity.is_black(); }
+bool is_black(const DirectionalEmitterDescription& light) { return light.irradiance.is_black(); }
+bool is_black(const ConstantEmitterDescription& constant) { return constant.radiance.is_black(); }
+
 bool has_light(const SceneDescription& scene) {
   const bool shines = std::any_of(scene.shapes.begin(), scene.shapes.end(), [](const ShapeDescription& shape) {
     return shape.emitted_radiance && !shape.emitted_radiance->is_black();
   });
   return shines || std::any_of(scene.emitters.begin(), scene.emitters.end(), [](const EmitterDescription& emitter) {
-           const auto* point = std::get_if<PointEmitterDescription>(&emitter);
-           return !(point ? point->intensity : std::get<ConstantEmitterDescription>(emitter).radiance).is_black();
+           return !std::visit([](const auto& described) { return is_black(described); }, emitter);
          });
 }
 

@@ -59,12 +59,29 @@ struct PointEmitterDescription {
   Rgb intensity{1.0f};  // W sr^-1
 };
 
+// A point that shines into a cone: the full intensity within beam_width of the axis, none beyond the cut-off, linear in the angle
+// between them.
+struct SpotEmitterDescription {
+  Vec3f position;
+  Vec3f axis{0, 0, 1};  // world, unit
+  Rgb intensity{1.0f};  // W sr^-1
+  float cutoff_angle_degrees = 20;
+  float beam_width_degrees = 15;  // half angle, like the cut-off
+};
+
+// Parallel light from infinitely far away.
+struct DirectionalEmitterDescription {
+  Vec3f direction{0, 0, 1};  // world, unit, in which the light travels
+  Rgb irradiance{1.0f};      // W m^-2 on a surface across it
+};
+
 // The same radiance from every direction, from infinitely far away.
 struct ConstantEmitterDescription {
   Rgb radiance{1.0f};
 };
 
-using EmitterDescription = std::variant<PointEmitterDescription, ConstantEmitterDescription>;
+using EmitterDescription =
+    std::variant<PointEmitterDescription, SpotEmitterDescription, DirectionalEmitterDescription, ConstantEmitterDescription>;
 
 // ---------------------------------------------------------------- camera, film, method
 

@@ -17,7 +17,8 @@ namespace fluxfarm {
 
 // What the scene contains, counted at load: the facts by which parts of the engine are built or left out.
 struct Census {
-  std::size_t shapes = 0, triangles = 0, area_emitters = 0, point_emitters = 0;
+  std::size_t shapes = 0, triangles = 0;
+  std::size_t area_emitters = 0, point_emitters = 0, spot_emitters = 0, directional_emitters = 0;
   bool environment = false;
   std::size_t materials = 0;
   bool delta_materials = false;        // some material has only delta lobes
@@ -65,7 +66,7 @@ class Scene {
   std::vector<std::unique_ptr<Bsdf>> bsdfs_;
   std::vector<Surface> surfaces_;
   std::vector<std::unique_ptr<AreaEmitter>> area_emitters_;
-  std::vector<std::unique_ptr<PointEmitter>> point_emitters_;
+  std::vector<std::unique_ptr<Emitter>> delta_emitters_;
   EmitterChoice emitter_choice_;
   std::optional<Rgb> environment_;
   std::unique_ptr<RayAccelerator> accelerator_;

@@ -15,7 +15,7 @@ std::string count(std::size_t number, const char* noun) { return std::to_string(
 
 std::string plan_json(const Scene& scene) {
   const Census& census = scene.census();
-  const std::size_t emitters = census.area_emitters + census.point_emitters;
+  const std::size_t emitters = census.area_emitters + census.point_emitters + census.spot_emitters + census.directional_emitters;
   const nlohmann::json plan = {
       {"integrator", "path"},
       {"census",
@@ -24,10 +24,12 @@ std::string plan_json(const Scene& scene) {
         {"materials", census.materials},
         {"area_emitters", census.area_emitters},
         {"point_emitters", census.point_emitters},
+        {"spot_emitters", census.spot_emitters},
+        {"directional_emitters", census.directional_emitters},
         {"environment", census.environment},
         {"delta_materials", census.delta_materials}}},
       {"parts",
-       {part("next-event estimation", emitters > 0, count(emitters, "emitter") + " with a place"),
+       {part("next-event estimation", emitters > 0, count(emitters, "emitter") + " that can be sampled"),
         part("emitter choice", emitters > 1, count(emitters, "emitter") + " to choose from"),
         part("environment", census.environment, census.environment ? "a constant environment" : "no environment"),
         part("tangent frames", census.anisotropic_materials,

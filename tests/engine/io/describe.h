@@ -89,6 +89,16 @@ class Describer {
     write("point", e.position);
     write("intensity", e.intensity);
   }
+  void write(const SpotEmitterDescription& e) {
+    write("spot", e.position);
+    write("axis", e.axis);
+    write("intensity", e.intensity);
+    out_ << "cone " << e.cutoff_angle_degrees << " " << e.beam_width_degrees << "\n";
+  }
+  void write(const DirectionalEmitterDescription& e) {
+    write("directional", e.direction);
+    write("irradiance", e.irradiance);
+  }
   void write(const ConstantEmitterDescription& e) { write("constant", e.radiance); }
 
   std::ostringstream out_;

@@ -88,12 +88,16 @@ TEST(Census, CountsWhatIsThere) {
   builder.shape(cube(Transform()), builder.diffuse(0.5f));
   builder.shape(SphereDescription{{0, 3, 0}, 1}, builder.diffuse(0), 2);
   builder.emitter(PointEmitterDescription{{0, 9, 0}, Rgb{1.0f}});
+  builder.emitter(SpotEmitterDescription{});
+  builder.emitter(DirectionalEmitterDescription{});
   builder.look({0, 0, -5}, {0, 0, 0});
   const Scene scene(builder.description(), 1);
   EXPECT_EQ(scene.census().shapes, 2u);
   EXPECT_EQ(scene.census().triangles, 12u);
   EXPECT_EQ(scene.census().area_emitters, 1u);
   EXPECT_EQ(scene.census().point_emitters, 1u);
+  EXPECT_EQ(scene.census().spot_emitters, 1u);
+  EXPECT_EQ(scene.census().directional_emitters, 1u);
   EXPECT_FALSE(scene.census().environment);
   EXPECT_FALSE(scene.census().anisotropic_materials);
 }

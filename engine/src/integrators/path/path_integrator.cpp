@@ -155,16 +155,23 @@ class PathGroup {
     const BsdfValue scatter = vertex.bsdf->value(vertex.wo, wi);
     if (scatter.f.is_black()) return;
 
-    // The shadow ray runs between points that are moved off both surfaces.
-    const Vec3f from = vertex.origin_towards(light->wi);
-    const Vec3f to = light->delta ? light->position : offset_point(light->position, light->normal);
-    const Vec3f segment = to - from;
-    const float distance = length(segment);
-    if (!(distance > 0)) return;
-    shadow_rays_[lights_] = {from, segment / distance, 0, distance * (1 - 1e-5f)};
+    const std::optional<Ray> shadow = shadow_ray(vertex, *light);
+    if (!shadow) return;
+    shadow_rays_[lights_] = *shadow;
     const float weight = light->delta ? 1.0f : power_heuristic(light->pdf_solid_angle * choice.probability, scatter.pdf);
     const Rgb arriving = scatter.f * light->weight * (std::fabs(wi.z) * weight / choice.probability);
     pending_[lights_++] = {path_[i].throughput * arriving, path_[i].result};
+  }
+
+  // Runs between points that are moved off both surfaces. Empty: they coincide.
+  static std::optional<Ray> shadow_ray(const PathVertex& vertex, const EmitterSample& light) {
+    const Vec3f from = vertex.origin_towards(light.wi);
+    if (light.distance == kDistant) return Ray{from, light.wi};
+    const Vec3f to = light.delta ? light.position : offset_point(light.position, light.normal);
+    const Vec3f segment = to - from;
+    const float distance = length(segment);
+    if (!(distance > 0)) return std::nullopt;
+    return Ray{from, segment / distance, 0, distance * (1 - 1e-5f)};
   }
 
   void gather_lights(bool coherent) {
