@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "io/envmap_image.h"
 #include "io/properties.h"
 #include "io/transform_checks.h"
 #include "support/error.h"
@@ -68,9 +69,25 @@ DirectionalEmitterDescription read_directional_emitter(Properties& properties) {
   return result;
 }
 
+EnvmapEmitterDescription read_envmap_emitter(const PluginNode& emitter, Properties& properties, const Bundle& bundle) {
+  EnvmapEmitterDescription result;
+  result.to_world = read_light_frame(properties);
+  const float scale = properties.number("scale", 1, kNotNegative);
+  properties.ignore({"mis_compensation"});
+  if (!properties.has("filename")) properties.fail("filename", "lacks the parameter \"filename\"");
+  const std::filesystem::path file = bundle.find(properties.text("filename", ""), emitter.place);
+  properties.finish();  // before the image, which may be large
+  result.image = read_envmap_image(file, bundle.name(file));
+  for (Rgb& pixel : result.image.pixels) {
+    pixel *= scale;
+    if (!is_finite(pixel)) properties.fail("scale", "makes the image's radiance infinite, expected a smaller number");
+  }
+  return result;
+}
+
 }  // namespace
 
-EmitterDescription read_scene_emitter(const PluginNode& emitter) {
+EmitterDescription read_scene_emitter(const PluginNode& emitter, const Bundle& bundle) {
   if (emitter.type == "area") throw SceneError(emitter.place, title(emitter) + " stands by itself, expected it inside a shape");
   check_no_children(emitter);
   Properties properties(emitter);
@@ -81,6 +98,8 @@ EmitterDescription read_scene_emitter(const PluginNode& emitter) {
     result = read_spot_emitter(properties);
   } else if (emitter.type == "directional") {
     result = read_directional_emitter(properties);
+  } else if (emitter.type == "envmap") {
+    result = read_envmap_emitter(emitter, properties, bundle);
   } else {
     properties.ignore({"to_world"});  // the same from every direction
     result = ConstantEmitterDescription{properties.emission("radiance", Rgb(1))};

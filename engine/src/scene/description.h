@@ -10,6 +10,7 @@
 #include <variant>
 #include <vector>
 
+#include "emitters/lat_long_image.h"
 #include "materials/material_description.h"
 #include "math/rgb.h"
 #include "math/transform.h"
@@ -80,8 +81,14 @@ struct ConstantEmitterDescription {
   Rgb radiance{1.0f};
 };
 
-using EmitterDescription =
-    std::variant<PointEmitterDescription, SpotEmitterDescription, DirectionalEmitterDescription, ConstantEmitterDescription>;
+// Radiance from infinitely far away, as the image tells it. A scene has one at most.
+struct EnvmapEmitterDescription {
+  LatLongImage image;
+  Transform to_world;  // turns, or mirrors, the image's directions
+};
+
+using EmitterDescription = std::variant<PointEmitterDescription, SpotEmitterDescription, DirectionalEmitterDescription,
+                                        ConstantEmitterDescription, EnvmapEmitterDescription>;
 
 // ---------------------------------------------------------------- camera, film, method
 

@@ -1,6 +1,7 @@
 #include "scene/make_emitter.h"
 
 #include "emitters/directional_emitter.h"
+#include "emitters/envmap_emitter.h"
 #include "emitters/spot_emitter.h"
 
 namespace fluxfarm {
@@ -19,6 +20,10 @@ std::unique_ptr<Emitter> make(const SpotEmitterDescription& spot, float) {
 
 std::unique_ptr<Emitter> make(const DirectionalEmitterDescription& light, float scene_radius) {
   return std::make_unique<DirectionalEmitter>(light.direction, light.irradiance, scene_radius);
+}
+
+std::unique_ptr<Emitter> make(const EnvmapEmitterDescription& map, float scene_radius) {
+  return std::make_unique<EnvmapEmitter>(map.image, map.to_world, scene_radius);
 }
 
 std::unique_ptr<Emitter> make(const ConstantEmitterDescription&, float) { return nullptr; }

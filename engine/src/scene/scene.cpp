@@ -66,7 +66,7 @@ Scene::Scene(const SceneDescription& description, int threads)
 
   const float radius = bounds_of(surfaces_).radius();
   for (const EmitterDescription& emitter : description.emitters) {
-    if (auto made = make_emitter(emitter, radius)) delta_emitters_.push_back(std::move(made));
+    if (auto made = make_emitter(emitter, radius)) free_emitters_.push_back(std::move(made));
     if (const auto* constant = std::get_if<ConstantEmitterDescription>(&emitter)) {
       environment_ = environment_.value_or(Rgb{}) + constant->radiance;
     }
@@ -76,15 +76,21 @@ Scene::Scene(const SceneDescription& description, int threads)
   }
   std::vector<const Emitter*> emitters;
   for (const auto& emitter : area_emitters_) emitters.push_back(emitter.get());
-  for (const auto& emitter : delta_emitters_) emitters.push_back(emitter.get());
+  for (const auto& emitter : free_emitters_) emitters.push_back(emitter.get());
   emitter_choice_ = EmitterChoice(emitters);
   std::size_t index = 0;
   for (Surface& surface : surfaces_) {
     if (surface.emitter != nullptr) surface.choice_probability = emitter_choice_.probability(index++);
   }
+  for (const auto& emitter : free_emitters_) {
+    const auto* map = dynamic_cast<const EnvmapEmitter*>(emitter.get());
+    if (map != nullptr) environment_map_ = {map, emitter_choice_.probability(index)};
+    ++index;
+  }
   census_.shapes = surfaces_.size();
   census_.area_emitters = area_emitters_.size();
   census_.environment = environment_.has_value();
+  census_.environment_map = environment_map_.emitter != nullptr;
 }
 
 }  // namespace fluxfarm

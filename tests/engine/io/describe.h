@@ -100,6 +100,11 @@ class Describer {
     write("irradiance", e.irradiance);
   }
   void write(const ConstantEmitterDescription& e) { write("constant", e.radiance); }
+  void write(const EnvmapEmitterDescription& e) {
+    out_ << "envmap " << e.image.width << " " << e.image.height << "\n";
+    for (const Rgb pixel : e.image.pixels) write("pixel", pixel);
+    write("turned", e.to_world);
+  }
 
   std::ostringstream out_;
 };

@@ -3,6 +3,7 @@
 
 #include "scene/scene.h"
 #include "support/scene_builder.h"
+#include "support/sky.h"
 
 namespace fluxfarm::testing {
 namespace {
@@ -90,6 +91,7 @@ TEST(Census, CountsWhatIsThere) {
   builder.emitter(PointEmitterDescription{{0, 9, 0}, Rgb{1.0f}});
   builder.emitter(SpotEmitterDescription{});
   builder.emitter(DirectionalEmitterDescription{});
+  builder.emitter(EnvmapEmitterDescription{even_sky(1), Transform()});
   builder.look({0, 0, -5}, {0, 0, 0});
   const Scene scene(builder.description(), 1);
   EXPECT_EQ(scene.census().shapes, 2u);
@@ -98,6 +100,7 @@ TEST(Census, CountsWhatIsThere) {
   EXPECT_EQ(scene.census().point_emitters, 1u);
   EXPECT_EQ(scene.census().spot_emitters, 1u);
   EXPECT_EQ(scene.census().directional_emitters, 1u);
+  EXPECT_TRUE(scene.census().environment_map);
   EXPECT_FALSE(scene.census().environment);
   EXPECT_FALSE(scene.census().anisotropic_materials);
 }

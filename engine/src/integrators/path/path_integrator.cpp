@@ -102,7 +102,7 @@ class PathGroup {
     const Hit& hit = hits_[i];
     const bool shows_emitters = depth > 0 || !method_.hide_emitters;
     if (hit.shape == Hit::kNone) {
-      if (scene_.environment() && shows_emitters) path.result->radiance += path.throughput * *scene_.environment();
+      if (shows_emitters) add_environment(path, ray.direction);
       return false;
     }
     const PathVertex& vertex = vertices_[i];
@@ -142,6 +142,16 @@ class PathGroup {
       weight = power_heuristic(path.bsdf_pdf, pdf * vertex.surface->choice_probability);
     }
     path.result->radiance += path.throughput * emitted * weight;
+  }
+
+  // Light from outside. Next-event estimation could have found that of the map, too, but never the constant one.
+  void add_environment(Path& path, Vec3f direction) const {
+    if (scene_.environment()) path.result->radiance += path.throughput * *scene_.environment();
+    const auto& [map, choice_probability] = scene_.environment_map();
+    if (map == nullptr) return;
+    const auto [radiance, pdf] = map->from(direction);
+    const float weight = path.delta ? 1.0f : power_heuristic(path.bsdf_pdf, pdf * choice_probability);
+    path.result->radiance += path.throughput * radiance * weight;
   }
 
   // Next-event estimation: one emitter, one point of it. Leaves a shadow ray and the light that it stands for.
