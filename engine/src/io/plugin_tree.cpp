@@ -48,7 +48,7 @@ constexpr KnownPlugin kKnownPlugins[] = {
     {"rectangle", PluginKind::kShape},     {"cube", PluginKind::kShape},          {"sphere", PluginKind::kShape},
     {"disk", PluginKind::kShape},          {"area", PluginKind::kEmitter},        {"point", PluginKind::kEmitter},
     {"spot", PluginKind::kEmitter},        {"directional", PluginKind::kEmitter}, {"constant", PluginKind::kEmitter},
-    {"envmap", PluginKind::kEmitter},
+    {"envmap", PluginKind::kEmitter},      {"thinlens", PluginKind::kSensor},
 };
 
 std::string known_types(PluginKind kind) {

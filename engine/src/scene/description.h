@@ -100,7 +100,7 @@ struct FilmDescription {
   PixelFilterDescription filter;
 };
 
-// Perspective pinhole. Camera space: looks along +z, +y up, +x left.
+// Perspective, through a pinhole or a thin lens. Camera space: looks along +z, +y up, +x left.
 struct CameraDescription {
   Transform to_world;
   enum class FovAxis { kX, kY, kDiagonal, kSmaller, kLarger };
@@ -108,6 +108,8 @@ struct CameraDescription {
   float fov_degrees = 45;  // full angle along fov_axis
   float near_clip = 1e-2f;
   float far_clip = 1e4f;
+  float aperture_radius = 0;  // m; 0 is a pinhole
+  float focus_distance = 1;   // m along the view axis, to the plane that a lens shows sharply
 };
 
 struct MethodDescription {

@@ -1,4 +1,5 @@
 // Parameters of materials, shapes and emitters: defaults and meanings as in Mitsuba 3.6.
+#include "io/describe.h"
 #include "io/scene_folder.h"
 
 namespace fluxfarm {
@@ -236,6 +237,26 @@ TEST(Cameras, MayBeMirroredButNotScaled) {
               camera("<float name=\"principal_point_offset_x\" value=\"0.1\"/>");
             }).find("is not supported yet, expected 0"),
             std::string::npos);
+}
+
+TEST(Cameras, WithALensNeedAnAperture) {
+  const SceneFolder folder;
+  const auto camera = [&](const std::string& inside) {
+    return folder.read_whole_xml("<scene version=\"3.0.0\"><sensor type=\"thinlens\">" + inside + "</sensor></scene>").camera;
+  };
+  const std::string aperture = "<float name=\"aperture_radius\" value=\"0.25\"/>";
+  EXPECT_FLOAT_EQ(camera(aperture).aperture_radius, 0.25f);
+  EXPECT_FLOAT_EQ(camera(aperture + "<float name=\"far_clip\" value=\"77\"/>").focus_distance, 77);  // Mitsuba 3.6.4's, too
+  const std::string text = describe(folder.read_whole_xml("<scene version=\"3.0.0\"><sensor type=\"thinlens\">" + aperture +
+                                                          "<float name=\"focus_distance\" value=\"6\"/></sensor></scene>"));
+  EXPECT_NE(text.find("lens 0.25 6\n"), std::string::npos) << text;
+  EXPECT_EQ(text, describe(folder.read_json(R"({"type": "scene", "sensor":
+    {"type": "thinlens", "aperture_radius": 0.25, "focus_distance": 6}})")));
+  EXPECT_EQ(error_of([&] { camera(""); }), "scene.xml:1: sensor \"thinlens\": lacks the parameter \"aperture_radius\"");
+  EXPECT_EQ(error_of([&] { camera("<float name=\"aperture_radius\" value=\"-1\"/>"); }),
+            "scene.xml:1: sensor \"thinlens\": aperture_radius = -1, expected a number of at least 0");
+  EXPECT_EQ(error_of([&] { camera(aperture + "<float name=\"focus_distance\" value=\"0\"/>"); }),
+            "scene.xml:1: sensor \"thinlens\": focus_distance = 0, expected a number greater than 0");
 }
 
 }  // namespace

@@ -52,7 +52,8 @@ TEST(SceneForms, XmlAndJsonOfOneSceneGiveTheSameDescription) {
   folder.write("models/a mesh.obj", kObj);
   const std::string from_xml = describe(folder.read_whole_xml(kXml));
   EXPECT_EQ(from_xml, describe(folder.read_json(kJson)));
-  EXPECT_NE(from_xml.find("fov 3 35 clip 0.01 10000\nfilm 320 200 crop 10 0 100 200 filter 1 1"), std::string::npos) << from_xml;
+  EXPECT_NE(from_xml.find("fov 3 35 clip 0.01 10000 lens 0 1\nfilm 320 200 crop 10 0 100 200 filter 1 1"), std::string::npos)
+      << from_xml;
 }
 
 TEST(SceneForms, StepsOfATransformApplyInTheOrderOfTheFile) {

@@ -29,9 +29,11 @@ SceneDescription small_scene() {
   return description;
 }
 
-// The same with every light that has no shape.
+// The same with every light that has no shape, through a lens.
 SceneDescription scene_lit_from_outside() {
   SceneDescription description = small_scene();
+  description.camera.aperture_radius = 0.1f;
+  description.camera.focus_distance = 3;
   description.emitters = {EnvmapEmitterDescription{patchy_sky(16, 11), Transform()}, ConstantEmitterDescription{Rgb{0.1f}},
                           DirectionalEmitterDescription{{0, -1, 0}, Rgb{1.0f}},
                           SpotEmitterDescription{{1, 2, 0}, {0, -1, 0}, Rgb{2.0f}, 40, 30},

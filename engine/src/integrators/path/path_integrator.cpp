@@ -15,6 +15,8 @@ constexpr std::size_t kMaxPaths = kMaxSamplerBatch;
 // Dimensions of a path: the film first, then so many for each bounce.
 enum BounceDimension : std::uint32_t { kEmitterPoint, kDirection, kEmitterChoice, kLobe, kRoulette, kBounceDimensions };
 constexpr std::uint32_t kFilmDimension = 0;
+// Counted from the other end, so that a lens moves no dimension of the paths behind it.
+constexpr std::uint32_t kLensDimension = 0xffffffffu;
 constexpr std::uint32_t dimension_of(int depth, BounceDimension use) {
   return 1 + static_cast<std::uint32_t>(depth) * kBounceDimensions + use;
 }
@@ -84,14 +86,18 @@ class PathGroup {
   void start(std::span<const CameraSample> samples, std::uint64_t seed, std::span<SampleResult> results) {
     sampler_.clear();
     for (const CameraSample& sample : samples) sampler_.add(seed, sample.x, sample.y, sample.index);
+    const Camera& camera = scene_.camera();
     sampler_.draw_2d(kFilmDimension, u_direction_);
+    std::array<Vec2f, kMaxPaths>& u_lens = u_emitter_;  // not in use yet
+    if (camera.has_lens()) sampler_.draw_2d(kLensDimension, u_lens);
     paths_ = samples.size();
     for (std::size_t i = 0; i < paths_; ++i) {
       results[i] = {};
       path_[i] = {.result = &results[i]};
       const Vec2f offset = scene_.pixel_filter().sample(u_direction_[i]);
-      rays_[i] = scene_.camera().ray(static_cast<float>(samples[i].x) + 0.5f + offset.x,
-                                     static_cast<float>(samples[i].y) + 0.5f + offset.y);
+      const float x = static_cast<float>(samples[i].x) + 0.5f + offset.x;
+      const float y = static_cast<float>(samples[i].y) + 0.5f + offset.y;
+      rays_[i] = camera.has_lens() ? camera.ray(x, y, u_lens[i]) : camera.ray(x, y);
     }
   }
 
