@@ -5,6 +5,13 @@
 
 namespace fluxfarm {
 
+namespace {
+
+// Rounding may reach the end of the last cell. What is no number stays inside, too, and shows in the place within the cell.
+int index(float coordinate, int cells) { return coordinate > 0 ? std::min(static_cast<int>(coordinate), cells - 1) : 0; }
+
+}  // namespace
+
 LatLongImage::Cell LatLongImage::cell(Vec3f d) const {
   // Both angles by arc tangents: the arc cosine has few digits near the poles.
   const float turn = std::atan2(d.x, -d.z) / kTwoPi;  // [-1/2, 1/2]
@@ -12,8 +19,7 @@ LatLongImage::Cell LatLongImage::cell(Vec3f d) const {
   float x = turn * static_cast<float>(width) - 0.5f;
   if (x < 0) x += static_cast<float>(width);
   const float y = half_turn * static_cast<float>(height - 1);
-  // Rounding may reach the end of the last cell.
-  const int column = std::min(static_cast<int>(x), width - 1), row = std::min(static_cast<int>(y), height - 2);
+  const int column = index(x, width), row = index(y, height - 1);
   return {column, row, x - static_cast<float>(column), y - static_cast<float>(row)};
 }
 

@@ -59,6 +59,11 @@ TEST(LatLongImage, DirectionsComeBackToTheirCell) {
   }
 }
 
+TEST(LatLongImage, DirectionThatIsNoNumberHasNoRadiance) {
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  EXPECT_FALSE(is_finite(sky().radiance(sky().cell({nan, nan, nan}))));
+}
+
 TEST(LatLongDistribution, DirectionsFollowTheirDensity) {
   const LatLongDistribution distribution(sky());
   const ChiSquareResult r = chi_square(
