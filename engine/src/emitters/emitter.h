@@ -1,10 +1,11 @@
 // Sources of light as next-event estimation sees them.
 //
-// Area and point emitters can be chosen and sampled from a reference point. The constant environment cannot: from a surface the
+// All but one can be chosen and sampled from a reference point. The constant environment cannot: from a surface the
 // BSDF's own sampling finds it with less variance and without a choice of direction of its own (its share of the multiple
 // importance weights is zero), so it only answers what radiance a ray that leaves the scene brings back.
 #pragma once
 
+#include <limits>
 #include <optional>
 
 #include "geometry/shape.h"
@@ -13,15 +14,18 @@
 
 namespace fluxfarm {
 
+// The distance of light from outside the scene.
+inline constexpr float kDistant = std::numeric_limits<float>::infinity();
+
 // Light that arrives at a reference point, if nothing is in between.
 struct EmitterSample {
-  Vec3f position;
+  Vec3f position;             // unused if `distance` is kDistant
   Vec3f normal;               // unit, front side of the emitter there; zero for a point
-  Vec3f wi;                   // unit, from the reference point towards `position`
+  Vec3f wi;                   // unit, from the reference point towards the light
   float distance = 0;         // m
-  Rgb weight;                 // radiance over pdf_solid_angle; for a point I / distance^2. W m^-2
-  float pdf_solid_angle = 0;  // sr^-1; 0 for a delta position
-  bool delta = false;         // BSDF sampling cannot find it
+  Rgb weight;                 // radiance over pdf_solid_angle; for a delta light the irradiance across wi. W m^-2
+  float pdf_solid_angle = 0;  // sr^-1; 0 for a delta light
+  bool delta = false;         // one direction only: BSDF sampling cannot find it
 };
 
 class Emitter {
@@ -29,7 +33,7 @@ class Emitter {
   virtual ~Emitter() = default;
   // Chooses a point of the emitter as seen from `reference`. Empty: no light can come from there.
   virtual std::optional<EmitterSample> sample(Vec3f reference, Vec2f u) const = 0;
-  virtual Rgb power() const = 0;  // W
+  virtual Rgb power() const = 0;  // W; of light from outside, what the scene can catch
 };
 
 class AreaEmitter final : public Emitter {

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <filesystem>
+#include <set>
+#include <string>
 
 #include "film/image.h"
 
@@ -14,5 +16,7 @@ void write_exr(const std::filesystem::path& path, const Image& image);
 // Reads every channel as 32-bit float, and the attributes of type string, float and int that are not OpenEXR's own.
 // Throws ResourceError if the file cannot be read or is no EXR image.
 Image read_exr(const std::filesystem::path& path);
+// The same, of the channels only those that `wanted` names, if the file has them.
+Image read_exr(const std::filesystem::path& path, const std::set<std::string>& wanted);
 
 }  // namespace fluxfarm

@@ -41,12 +41,14 @@ void read_windows(const Imf::Header& header, Image& image) {
   image.height = static_cast<int>(std::min(side(display.min.y, display.max.y), kMaxImageSide));
 }
 
-Image read(const std::filesystem::path& path) {
+// Without `wanted`, all channels.
+Image read(const std::filesystem::path& path, const std::set<std::string>* wanted) {
   Imf::InputFile file(path.c_str(), 0);
   Image image;
   read_windows(file.header(), image);
   read_attributes(file.header(), image);
   for (auto it = file.header().channels().begin(); it != file.header().channels().end(); ++it) {
+    if (wanted && !wanted->count(it.name())) continue;
     image.channels.push_back({it.name(), std::vector<float>(static_cast<std::size_t>(image.data_window.pixels()))});
   }
   const PixelRect& rect = image.data_window;
@@ -60,14 +62,18 @@ Image read(const std::filesystem::path& path) {
   return image;
 }
 
-}  // namespace
-
-Image read_exr(const std::filesystem::path& path) {
+Image read_or_fail(const std::filesystem::path& path, const std::set<std::string>* wanted) {
   try {
-    return read(path);
+    return read(path, wanted);
   } catch (const std::exception& error) {
     throw ResourceError(path.string() + ": cannot be read as EXR: " + error.what());
   }
 }
+
+}  // namespace
+
+Image read_exr(const std::filesystem::path& path) { return read_or_fail(path, nullptr); }
+
+Image read_exr(const std::filesystem::path& path, const std::set<std::string>& wanted) { return read_or_fail(path, &wanted); }
 
 }  // namespace fluxfarm

@@ -47,7 +47,8 @@ constexpr KnownPlugin kKnownPlugins[] = {
     {"roughplastic", PluginKind::kBsdf},   {"obj", PluginKind::kShape},           {"ply", PluginKind::kShape},
     {"rectangle", PluginKind::kShape},     {"cube", PluginKind::kShape},          {"sphere", PluginKind::kShape},
     {"disk", PluginKind::kShape},          {"area", PluginKind::kEmitter},        {"point", PluginKind::kEmitter},
-    {"constant", PluginKind::kEmitter},
+    {"spot", PluginKind::kEmitter},        {"directional", PluginKind::kEmitter}, {"constant", PluginKind::kEmitter},
+    {"envmap", PluginKind::kEmitter},      {"thinlens", PluginKind::kSensor},
 };
 
 std::string known_types(PluginKind kind) {

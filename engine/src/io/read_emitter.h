@@ -1,6 +1,7 @@
-// Reads emitter plugins: area (inside a shape), point and constant (in the scene).
+// Reads emitter plugins: area (inside a shape), point, spot, directional, constant and envmap (in the scene).
 #pragma once
 
+#include "io/bundle.h"
 #include "io/plugin_tree.h"
 #include "scene/description.h"
 
@@ -9,7 +10,7 @@ namespace fluxfarm {
 // Radiance (W m^-2 sr^-1) of an `area` emitter inside `shape`. Throws SceneError for other emitters.
 Rgb read_area_emitter(const PluginNode& emitter, const PluginNode& shape);
 
-// An emitter that stands in the scene by itself. Throws SceneError.
-EmitterDescription read_scene_emitter(const PluginNode& emitter);
+// An emitter that stands in the scene by itself; `bundle` finds the image of an envmap. Throws SceneError.
+EmitterDescription read_scene_emitter(const PluginNode& emitter, const Bundle& bundle);
 
 }  // namespace fluxfarm

@@ -50,7 +50,7 @@ Transform read_camera_frame(Properties& properties) {
   return to_world;
 }
 
-CameraDescription read_camera(Properties& properties) {
+CameraDescription read_camera(const std::string& type, Properties& properties) {
   CameraDescription camera;
   camera.to_world = read_camera_frame(properties);
   if (properties.has("fov") && properties.has("focal_length")) properties.fail("focal_length", "but fov is given, too");
@@ -67,6 +67,11 @@ CameraDescription read_camera(Properties& properties) {
     properties.fail("far_clip", "expected more than near_clip = " + number_text(camera.near_clip));
   for (const char* name : {"principal_point_offset_x", "principal_point_offset_y"}) {
     if (properties.number(name, 0) != 0) properties.fail(name, "is not supported yet, expected 0");
+  }
+  if (type == "thinlens") {
+    if (!properties.has("aperture_radius")) properties.fail("aperture_radius", "lacks the parameter \"aperture_radius\"");
+    camera.aperture_radius = properties.number("aperture_radius", 0, kNotNegative);
+    camera.focus_distance = properties.number("focus_distance", camera.far_clip, kPositive);
   }
   properties.ignore({"shutter_open", "shutter_close"});
   return camera;
@@ -86,7 +91,7 @@ int read_sampler(const PluginNode& sampler) {
 
 void read_sensor(const PluginNode& sensor, SceneDescription& scene) {
   Properties properties(sensor);
-  scene.camera = read_camera(properties);
+  scene.camera = read_camera(sensor.type, properties);
   properties.finish();
   bool has_film = false, has_sampler = false;
   for (const PluginNode& child : sensor.children) {

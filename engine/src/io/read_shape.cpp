@@ -8,32 +8,11 @@
 #include "io/mesh_ply.h"
 #include "io/properties.h"
 #include "io/read_emitter.h"
+#include "io/transform_checks.h"
 #include "support/error.h"
 
 namespace fluxfarm {
 namespace {
-
-using Column = std::array<double, 3>;
-
-Column column(const Transform& transform, std::size_t j) {
-  const auto& m = transform.matrix();
-  return {m[0][j], m[1][j], m[2][j]};
-}
-
-double dot_product(const Column& a, const Column& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-
-// Whether the first `count` columns are perpendicular to each other and of one length greater than zero.
-bool keeps_shape(const Transform& transform, std::size_t count) {
-  constexpr double kTolerance = 1e-3;  // Mitsuba's
-  const double squared = dot_product(column(transform, 0), column(transform, 0));
-  for (std::size_t a = 0; a < count; ++a) {
-    for (std::size_t b = 0; b <= a; ++b) {
-      const double expected = a == b ? squared : 0;
-      if (std::abs(dot_product(column(transform, a), column(transform, b)) - expected) > kTolerance * squared) return false;
-    }
-  }
-  return squared > 0;
-}
 
 // [-1,1]^3 with four vertices a side, so that normals and texture coordinates are those of the sides.
 RawMesh cube_mesh() {
@@ -86,8 +65,7 @@ SphereDescription read_sphere(Properties& properties, bool& flip_normals) {
   const Triple c = properties.triple("center", {0, 0, 0});
   SphereDescription sphere;
   sphere.center = to_world.point({static_cast<float>(c[0]), static_cast<float>(c[1]), static_cast<float>(c[2])});
-  const Column x = column(to_world, 0);
-  sphere.radius = properties.number("radius", 1, kPositive) * static_cast<float>(std::sqrt(dot_product(x, x)));
+  sphere.radius = properties.number("radius", 1, kPositive) * static_cast<float>(axis_scale(to_world, 0));
   if (!is_finite(sphere.center)) properties.fail("center", "expected finite numbers");
   if (!(sphere.radius > 0) || !std::isfinite(sphere.radius))
     properties.fail("radius", "with to_world the radius becomes 0 or infinite");

@@ -32,13 +32,21 @@ void check_unused_materials(const PluginNode& scene, const PluginsById& plugins,
   }
 }
 
+bool is_black(const PointEmitterDescription& point) { return point.intensity.is_black(); }
+bool is_black(const SpotEmitterDescription& spot) { return spot.intensity.is_black(); }
+bool is_black(const DirectionalEmitterDescription& light) { return light.irradiance.is_black(); }
+bool is_black(const ConstantEmitterDescription& constant) { return constant.radiance.is_black(); }
+
+bool is_black(const EnvmapEmitterDescription& map) {
+  return std::all_of(map.image.pixels.begin(), map.image.pixels.end(), [](Rgb pixel) { return pixel.is_black(); });
+}
+
 bool has_light(const SceneDescription& scene) {
   const bool shines = std::any_of(scene.shapes.begin(), scene.shapes.end(), [](const ShapeDescription& shape) {
     return shape.emitted_radiance && !shape.emitted_radiance->is_black();
   });
   return shines || std::any_of(scene.emitters.begin(), scene.emitters.end(), [](const EmitterDescription& emitter) {
-           const auto* point = std::get_if<PointEmitterDescription>(&emitter);
-           return !(point ? point->intensity : std::get<ConstantEmitterDescription>(emitter).radiance).is_black();
+           return !std::visit([](const auto& described) { return is_black(described); }, emitter);
          });
 }
 
@@ -49,10 +57,16 @@ SceneDescription build(const PluginNode& root, const Bundle& bundle) {
   MaterialReader materials(plugins, scene.materials);
   const PluginNode* sensor = nullptr;
   const PluginNode* integrator = nullptr;
+  const PluginNode* envmap = nullptr;
   for (const PluginNode& child : root.children) {
     switch (child.kind) {
       case PluginKind::kShape: scene.shapes.push_back(read_shape(child, bundle, materials, scene.warnings)); break;
-      case PluginKind::kEmitter: scene.emitters.push_back(read_scene_emitter(child)); break;
+      case PluginKind::kEmitter:
+        if (child.type == "envmap" && envmap)
+          throw SceneError(child.place, "the scene has a second envmap; the first is at " + envmap->place);
+        if (child.type == "envmap") envmap = &child;
+        scene.emitters.push_back(read_scene_emitter(child, bundle));
+        break;
       case PluginKind::kBsdf: break;  // read when a shape refers to it
       case PluginKind::kSensor:
         if (sensor)

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "sampling/warp.h"
+
 namespace fluxfarm {
 namespace {
 
@@ -22,23 +24,36 @@ float half_width(const CameraDescription& camera, float aspect) {
 }  // namespace
 
 Camera::Camera(const CameraDescription& description, int width, int height)
-    : near_clip_(description.near_clip), far_clip_(description.far_clip) {
+    : near_clip_(description.near_clip),
+      far_clip_(description.far_clip),
+      aperture_radius_(description.aperture_radius),
+      focus_distance_(description.focus_distance) {
   const Transform& to_world = description.to_world;
   origin_ = to_world.point({});
   axis_ = normalize(to_world.vector({0, 0, 1}));
   // Camera space has +x to the left, +y up: film x runs against x, film y runs against y.
-  const Vec3f right = normalize(to_world.vector({-1, 0, 0})), down = normalize(to_world.vector({0, -1, 0}));
+  right_ = normalize(to_world.vector({-1, 0, 0}));
+  down_ = normalize(to_world.vector({0, -1, 0}));
   const float aspect = static_cast<float>(width) / static_cast<float>(height);
   const float half_x = half_width(description, aspect), half_y = half_x / aspect;
-  top_left_ = axis_ - half_x * right - half_y * down;
-  step_x_ = (2 * half_x / static_cast<float>(width)) * right;
-  step_y_ = (2 * half_y / static_cast<float>(height)) * down;
+  top_left_ = axis_ - half_x * right_ - half_y * down_;
+  step_x_ = (2 * half_x / static_cast<float>(width)) * right_;
+  step_y_ = (2 * half_y / static_cast<float>(height)) * down_;
 }
 
 Ray Camera::ray(float x, float y) const {
   const Vec3f d = top_left_ + x * step_x_ + y * step_y_;  // reaches the plane at distance 1
   const float scale = length(d);
   return {origin_, d / scale, near_clip_ * scale, far_clip_ * scale};
+}
+
+Ray Camera::ray(float x, float y, Vec2f u) const {
+  const Vec2f p = square_to_uniform_disk(u);
+  const Vec3f lens = (aperture_radius_ * p.x) * right_ + (aperture_radius_ * p.y) * down_;
+  const Vec3f d = focus_distance_ * (top_left_ + x * step_x_ + y * step_y_) - lens;  // reaches the plane in focus
+  const float reach = length(d);
+  const float scale = reach / focus_distance_;
+  return {origin_ + lens, d / reach, near_clip_ * scale, far_clip_ * scale};
 }
 
 }  // namespace fluxfarm

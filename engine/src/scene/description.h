@@ -10,6 +10,7 @@
 #include <variant>
 #include <vector>
 
+#include "emitters/lat_long_image.h"
 #include "materials/material_description.h"
 #include "math/rgb.h"
 #include "math/transform.h"
@@ -59,12 +60,35 @@ struct PointEmitterDescription {
   Rgb intensity{1.0f};  // W sr^-1
 };
 
+// A point that shines into a cone: the full intensity within beam_width of the axis, none beyond the cut-off, linear in the angle
+// between them.
+struct SpotEmitterDescription {
+  Vec3f position;
+  Vec3f axis{0, 0, 1};  // world, unit
+  Rgb intensity{1.0f};  // W sr^-1
+  float cutoff_angle_degrees = 20;
+  float beam_width_degrees = 15;  // half angle, like the cut-off
+};
+
+// Parallel light from infinitely far away.
+struct DirectionalEmitterDescription {
+  Vec3f direction{0, 0, 1};  // world, unit, in which the light travels
+  Rgb irradiance{1.0f};      // W m^-2 on a surface across it
+};
+
 // The same radiance from every direction, from infinitely far away.
 struct ConstantEmitterDescription {
   Rgb radiance{1.0f};
 };
 
-using EmitterDescription = std::variant<PointEmitterDescription, ConstantEmitterDescription>;
+// Radiance from infinitely far away, as the image tells it. A scene has one at most.
+struct EnvmapEmitterDescription {
+  LatLongImage image;
+  Transform to_world;  // turns, or mirrors, the image's directions
+};
+
+using EmitterDescription = std::variant<PointEmitterDescription, SpotEmitterDescription, DirectionalEmitterDescription,
+                                        ConstantEmitterDescription, EnvmapEmitterDescription>;
 
 // ---------------------------------------------------------------- camera, film, method
 
@@ -76,7 +100,7 @@ struct FilmDescription {
   PixelFilterDescription filter;
 };
 
-// Perspective pinhole. Camera space: looks along +z, +y up, +x left.
+// Perspective, through a pinhole or a thin lens. Camera space: looks along +z, +y up, +x left.
 struct CameraDescription {
   Transform to_world;
   enum class FovAxis { kX, kY, kDiagonal, kSmaller, kLarger };
@@ -84,6 +108,8 @@ struct CameraDescription {
   float fov_degrees = 45;  // full angle along fov_axis
   float near_clip = 1e-2f;
   float far_clip = 1e4f;
+  float aperture_radius = 0;  // m; 0 is a pinhole
+  float focus_distance = 1;   // m along the view axis, to the plane that a lens shows sharply
 };
 
 struct MethodDescription {

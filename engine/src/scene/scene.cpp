@@ -1,6 +1,7 @@
 #include "scene/scene.h"
 
 #include "materials/make_bsdf.h"
+#include "scene/make_emitter.h"
 #include "scene/make_shape.h"
 
 namespace fluxfarm {
@@ -14,6 +15,16 @@ bool is_anisotropic(const std::vector<MaterialDescription>& materials, const Mat
     return is_anisotropic(materials, materials[twosided->front]) || is_anisotropic(materials, materials[twosided->back]);
   }
   return false;
+}
+
+Bounds bounds_of(const std::vector<Scene::Surface>& surfaces) {
+  Bounds bounds;
+  for (const Scene::Surface& surface : surfaces) {
+    const Bounds own = surface.shape->bounds();
+    bounds.extend(own.lower);
+    bounds.extend(own.upper);
+  }
+  return bounds;
 }
 
 }  // namespace
@@ -53,25 +64,33 @@ Scene::Scene(const SceneDescription& description, int threads)
   }
   accelerator_->build();
 
+  const float radius = bounds_of(surfaces_).radius();
   for (const EmitterDescription& emitter : description.emitters) {
-    if (const auto* point = std::get_if<PointEmitterDescription>(&emitter)) {
-      point_emitters_.push_back(std::make_unique<PointEmitter>(point->position, point->intensity));
-    } else {
-      environment_ = environment_.value_or(Rgb{}) + std::get<ConstantEmitterDescription>(emitter).radiance;
+    if (auto made = make_emitter(emitter, radius)) free_emitters_.push_back(std::move(made));
+    if (const auto* constant = std::get_if<ConstantEmitterDescription>(&emitter)) {
+      environment_ = environment_.value_or(Rgb{}) + constant->radiance;
     }
+    census_.point_emitters += std::holds_alternative<PointEmitterDescription>(emitter);
+    census_.spot_emitters += std::holds_alternative<SpotEmitterDescription>(emitter);
+    census_.directional_emitters += std::holds_alternative<DirectionalEmitterDescription>(emitter);
   }
   std::vector<const Emitter*> emitters;
   for (const auto& emitter : area_emitters_) emitters.push_back(emitter.get());
-  for (const auto& emitter : point_emitters_) emitters.push_back(emitter.get());
+  for (const auto& emitter : free_emitters_) emitters.push_back(emitter.get());
   emitter_choice_ = EmitterChoice(emitters);
   std::size_t index = 0;
   for (Surface& surface : surfaces_) {
     if (surface.emitter != nullptr) surface.choice_probability = emitter_choice_.probability(index++);
   }
+  for (const auto& emitter : free_emitters_) {
+    const auto* map = dynamic_cast<const EnvmapEmitter*>(emitter.get());
+    if (map != nullptr) environment_map_ = {map, emitter_choice_.probability(index)};
+    ++index;
+  }
   census_.shapes = surfaces_.size();
   census_.area_emitters = area_emitters_.size();
-  census_.point_emitters = point_emitters_.size();
   census_.environment = environment_.has_value();
+  census_.environment_map = environment_map_.emitter != nullptr;
 }
 
 }  // namespace fluxfarm

@@ -9,6 +9,7 @@
 #include "accel/ray_accelerator.h"
 #include "emitters/emitter.h"
 #include "emitters/emitter_choice.h"
+#include "emitters/envmap_emitter.h"
 #include "materials/bsdf.h"
 #include "scene/camera.h"
 #include "scene/description.h"
@@ -17,8 +18,10 @@ namespace fluxfarm {
 
 // What the scene contains, counted at load: the facts by which parts of the engine are built or left out.
 struct Census {
-  std::size_t shapes = 0, triangles = 0, area_emitters = 0, point_emitters = 0;
-  bool environment = false;
+  std::size_t shapes = 0, triangles = 0;
+  std::size_t area_emitters = 0, point_emitters = 0, spot_emitters = 0, directional_emitters = 0;
+  bool environment = false;      // a constant one
+  bool environment_map = false;  // an image
   std::size_t materials = 0;
   bool delta_materials = false;        // some material has only delta lobes
   bool anisotropic_materials = false;  // tangent frames are needed
@@ -50,6 +53,11 @@ class Scene {
   const EmitterChoice& emitters() const { return emitter_choice_; }
   // Radiance of the constant environment; empty without one.
   const std::optional<Rgb>& environment() const { return environment_; }
+  struct EnvironmentMap {
+    const EnvmapEmitter* emitter = nullptr;  // nullptr: none
+    float choice_probability = 0;            // in next-event estimation
+  };
+  const EnvironmentMap& environment_map() const { return environment_map_; }
   const Camera& camera() const { return camera_; }
   const FilmDescription& film() const { return film_; }
   const PixelFilter& pixel_filter() const { return pixel_filter_; }
@@ -65,9 +73,10 @@ class Scene {
   std::vector<std::unique_ptr<Bsdf>> bsdfs_;
   std::vector<Surface> surfaces_;
   std::vector<std::unique_ptr<AreaEmitter>> area_emitters_;
-  std::vector<std::unique_ptr<PointEmitter>> point_emitters_;
+  std::vector<std::unique_ptr<Emitter>> free_emitters_;  // those without a shape
   EmitterChoice emitter_choice_;
   std::optional<Rgb> environment_;
+  EnvironmentMap environment_map_;
   std::unique_ptr<RayAccelerator> accelerator_;
   Census census_;
   std::vector<std::string> warnings_;

@@ -44,6 +44,48 @@ TEST(CatalogueD1, PointLightOverPlane) {
   }
 }
 
+// D1 under a spot light: the intensity falls off linearly in the angle; x = tan(angle).
+TEST(CatalogueD1, SpotLightOverPlane) {
+  for (const auto& [degrees, share] : {std::pair{0.0, 1.0}, std::pair{25.0, 0.5}, std::pair{35.0, 0.0}}) {
+    const double x = std::tan(degrees * kPiD / 180);
+    SceneBuilder scene;
+    scene.floor(0, 20, scene.diffuse(kRho));
+    scene.emitter(SpotEmitterDescription{{0, 1, 0}, {0, -1, 0}, Rgb{2.0f}, 30, 20});
+    scene.look({x + 0.5, 2, 0.5}, {x, 0, 0});
+    const double without_falloff = static_cast<double>(kRho) / kPiD * 2 / std::pow(1 + x * x, 1.5);
+    const double mean = measure(scene.description(), 8).mean;
+    EXPECT_NEAR(mean, share * without_falloff, 3e-4);  // nothing is random; the camera's pixels are small, not points
+    EXPECT_EQ(std::abs(mean - without_falloff) > 1e-2, share < 1) << "the fall-off matters off axis only";
+  }
+}
+
+// D1 under parallel light: E = E_perpendicular cos, with and without something far away in between.
+TEST(CatalogueD1, DirectionalLightOnPlane) {
+  for (const bool shadow : {false, true}) {
+    SceneBuilder scene;
+    scene.floor(0, 20, scene.diffuse(kRho));
+    scene.emitter(DirectionalEmitterDescription{{0.6f, -0.8f, 0}, Rgb{2.0f}});
+    if (shadow) scene.shape(SphereDescription{{-600, 800, 0}, 1}, scene.diffuse(0));
+    scene.look({0.5, 2, 0.5}, {0, 0, 0});
+    const double mean = measure(scene.description(), 8).mean;
+    EXPECT_NEAR(mean, shadow ? 0 : static_cast<double>(kRho) / kPiD * 2 * 0.8, 1e-5);
+    EXPECT_GT(std::abs(mean - static_cast<double>(kRho) / kPiD * 2), 0.1) << "a renderer without the cosine is told apart";
+  }
+}
+
+// The choice of emitters is paid for: several lights of all kinds add up.
+TEST(CatalogueD1, DeltaLightsAddUp) {
+  SceneBuilder scene;
+  scene.floor(0, 20, scene.diffuse(kRho));
+  scene.emitter(PointEmitterDescription{{0, 1, 0}, Rgb{1.0f}});
+  scene.emitter(SpotEmitterDescription{{0, 1, 0}, {0, -1, 0}, Rgb{2.0f}, 30, 20});
+  scene.emitter(DirectionalEmitterDescription{{0, -1, 0}, Rgb{3.0f}});
+  scene.look({0.5, 2, 0.5}, {0, 0, 0});
+  const Measurement m = measure(scene.description(), 4096);
+  expect_answer(m, static_cast<double>(kRho) / kPiD * 6);
+  expect_rejected(m, static_cast<double>(kRho) / kPiD * 6 * 1.02);
+}
+
 // D2: form factor of a parallel rectangle, centred 1 x 1 at distance 1, and a corner above the point.
 TEST(CatalogueD2, ParallelRectangle) {
   for (const auto& [a, b, d, offset, f] :

@@ -21,10 +21,11 @@ class Describer {
     for (const auto& emitter : scene.emitters) std::visit([this](const auto& e) { write(e); }, emitter);
     write("camera", scene.camera.to_world);
     out_ << "fov " << static_cast<int>(scene.camera.fov_axis) << " " << scene.camera.fov_degrees << " clip "
-         << scene.camera.near_clip << " " << scene.camera.far_clip << "\nfilm " << scene.film.width << " " << scene.film.height
-         << " crop " << scene.film.crop_x << " " << scene.film.crop_y << " " << scene.film.crop_width << " "
-         << scene.film.crop_height << " filter " << static_cast<int>(scene.film.filter.kind) << " " << scene.film.filter.radius
-         << " " << scene.film.filter.stddev << "\nmethod " << scene.method.integrator << " " << scene.method.max_depth << " "
+         << scene.camera.near_clip << " " << scene.camera.far_clip << " lens " << scene.camera.aperture_radius << " "
+         << scene.camera.focus_distance << "\nfilm " << scene.film.width << " " << scene.film.height << " crop "
+         << scene.film.crop_x << " " << scene.film.crop_y << " " << scene.film.crop_width << " " << scene.film.crop_height
+         << " filter " << static_cast<int>(scene.film.filter.kind) << " " << scene.film.filter.radius << " "
+         << scene.film.filter.stddev << "\nmethod " << scene.method.integrator << " " << scene.method.max_depth << " "
          << scene.method.rr_depth << " " << scene.method.hide_emitters << " samples " << scene.samples_per_pixel << "\n";
     return out_.str();
   }
@@ -89,7 +90,22 @@ class Describer {
     write("point", e.position);
     write("intensity", e.intensity);
   }
+  void write(const SpotEmitterDescription& e) {
+    write("spot", e.position);
+    write("axis", e.axis);
+    write("intensity", e.intensity);
+    out_ << "cone " << e.cutoff_angle_degrees << " " << e.beam_width_degrees << "\n";
+  }
+  void write(const DirectionalEmitterDescription& e) {
+    write("directional", e.direction);
+    write("irradiance", e.irradiance);
+  }
   void write(const ConstantEmitterDescription& e) { write("constant", e.radiance); }
+  void write(const EnvmapEmitterDescription& e) {
+    out_ << "envmap " << e.image.width << " " << e.image.height << "\n";
+    for (const Rgb pixel : e.image.pixels) write("pixel", pixel);
+    write("turned", e.to_world);
+  }
 
   std::ostringstream out_;
 };

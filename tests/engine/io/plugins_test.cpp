@@ -1,4 +1,5 @@
 // Parameters of materials, shapes and emitters: defaults and meanings as in Mitsuba 3.6.
+#include "io/describe.h"
 #include "io/scene_folder.h"
 
 namespace fluxfarm {
@@ -146,6 +147,66 @@ TEST(Emitters, UniformSpectraHaveTheColourOfEqualEnergyWhite) {
   EXPECT_NEAR(white.b, 4.54458f, 1e-5f);
 }
 
+// The only emitter of a scene beside the one around it.
+template <typename Description>
+Description emitter(const SceneFolder& folder, const std::string& type, const std::string& inside) {
+  const SceneDescription scene = folder.read_xml("<emitter type=\"" + type + "\">" + inside + "</emitter>");
+  return std::get<Description>(scene.emitters.at(1));
+}
+
+TEST(Emitters, SpotsShineAlongTheirZAxis) {
+  const SceneFolder folder;
+  const auto bare = emitter<SpotEmitterDescription>(folder, "spot", "");
+  EXPECT_EQ(bare.axis, (Vec3f{0, 0, 1}));
+  EXPECT_EQ(bare.intensity, Rgb(1));
+  EXPECT_FLOAT_EQ(bare.cutoff_angle_degrees, 20);
+  EXPECT_FLOAT_EQ(bare.beam_width_degrees, 15);
+  const auto turned =
+      emitter<SpotEmitterDescription>(folder, "spot",
+                                      "<float name=\"cutoff_angle\" value=\"40\"/><transform name=\"to_world\"><scale value=\"3\"/>"
+                                      "<lookat origin=\"1 2 3\" target=\"1 0 3\" up=\"1 0 0\"/></transform>");
+  EXPECT_EQ(turned.position, (Vec3f{1, 2, 3}));
+  EXPECT_NEAR(turned.axis.y, -1, 1e-6f);
+  EXPECT_FLOAT_EQ(turned.beam_width_degrees, 30);
+}
+
+TEST(Emitters, SpotsWithImpossibleConesAreErrors) {
+  const SceneFolder folder;
+  const auto error = [&](const std::string& inside) {
+    return error_of([&] { emitter<SpotEmitterDescription>(folder, "spot", inside); });
+  };
+  EXPECT_EQ(error("<float name=\"cutoff_angle\" value=\"0\"/>"),
+            "scene.xml:2: emitter \"spot\": cutoff_angle = 0, expected a number in (0, 180)");
+  EXPECT_EQ(error("<float name=\"beam_width\" value=\"25\"/>"),
+            "scene.xml:2: emitter \"spot\": beam_width = 25, expected a number in [0, 20]");
+  EXPECT_EQ(error("<transform name=\"to_world\"><scale x=\"2\"/></transform>"),
+            "scene.xml:2: emitter \"spot\": to_world = a transform, stretches or shears the light, expected the same scale, "
+            "not 0, on all axes");
+}
+
+TEST(Emitters, DirectionalLightTravelsAlongItsDirection) {
+  const SceneFolder folder;
+  EXPECT_EQ(emitter<DirectionalEmitterDescription>(folder, "directional", "").direction, (Vec3f{0, 0, 1}));
+  const auto given = emitter<DirectionalEmitterDescription>(
+      folder, "directional", "<vector name=\"direction\" value=\"0 -3 4\"/><rgb name=\"irradiance\" value=\"1 2 3\"/>");
+  EXPECT_NEAR(length(given.direction - Vec3f{0, -0.6f, 0.8f}), 0, 1e-6f);
+  EXPECT_EQ(given.irradiance, Rgb(1, 2, 3));
+  const auto turned = emitter<DirectionalEmitterDescription>(
+      folder, "directional", "<transform name=\"to_world\"><rotate x=\"1\" angle=\"90\"/><translate x=\"9\"/></transform>");
+  EXPECT_NEAR(length(turned.direction - Vec3f{0, -1, 0}), 0, 1e-6f);
+}
+
+TEST(Emitters, DirectionalLightNeedsOneDirection) {
+  const SceneFolder folder;
+  const std::string up = "<vector name=\"direction\" value=\"0 1 0\"/>", down = "<vector name=\"direction\" value=\"0 0 0\"/>";
+  const std::string frame = "<transform name=\"to_world\"><rotate x=\"1\" angle=\"90\"/></transform>";
+  const auto error = [&](const std::string& inside) {
+    return error_of([&] { emitter<DirectionalEmitterDescription>(folder, "directional", inside); });
+  };
+  EXPECT_EQ(error(down), "scene.xml:2: emitter \"directional\": direction = 0, 0, 0, expected a direction other than 0, 0, 0");
+  EXPECT_EQ(error(up + frame), "scene.xml:2: emitter \"directional\": direction = 0, 1, 0, but to_world is given, too");
+}
+
 TEST(Emitters, StandWhereTheyBelong) {
   const SceneFolder folder;
   EXPECT_EQ(error_of([&] { folder.read_xml("<emitter type=\"area\"/>"); }),
@@ -176,6 +237,26 @@ TEST(Cameras, MayBeMirroredButNotScaled) {
               camera("<float name=\"principal_point_offset_x\" value=\"0.1\"/>");
             }).find("is not supported yet, expected 0"),
             std::string::npos);
+}
+
+TEST(Cameras, WithALensNeedAnAperture) {
+  const SceneFolder folder;
+  const auto camera = [&](const std::string& inside) {
+    return folder.read_whole_xml("<scene version=\"3.0.0\"><sensor type=\"thinlens\">" + inside + "</sensor></scene>").camera;
+  };
+  const std::string aperture = "<float name=\"aperture_radius\" value=\"0.25\"/>";
+  EXPECT_FLOAT_EQ(camera(aperture).aperture_radius, 0.25f);
+  EXPECT_FLOAT_EQ(camera(aperture + "<float name=\"far_clip\" value=\"77\"/>").focus_distance, 77);  // Mitsuba 3.6.4's, too
+  const std::string text = describe(folder.read_whole_xml("<scene version=\"3.0.0\"><sensor type=\"thinlens\">" + aperture +
+                                                          "<float name=\"focus_distance\" value=\"6\"/></sensor></scene>"));
+  EXPECT_NE(text.find("lens 0.25 6\n"), std::string::npos) << text;
+  EXPECT_EQ(text, describe(folder.read_json(R"({"type": "scene", "sensor":
+    {"type": "thinlens", "aperture_radius": 0.25, "focus_distance": 6}})")));
+  EXPECT_EQ(error_of([&] { camera(""); }), "scene.xml:1: sensor \"thinlens\": lacks the parameter \"aperture_radius\"");
+  EXPECT_EQ(error_of([&] { camera("<float name=\"aperture_radius\" value=\"-1\"/>"); }),
+            "scene.xml:1: sensor \"thinlens\": aperture_radius = -1, expected a number of at least 0");
+  EXPECT_EQ(error_of([&] { camera(aperture + "<float name=\"focus_distance\" value=\"0\"/>"); }),
+            "scene.xml:1: sensor \"thinlens\": focus_distance = 0, expected a number greater than 0");
 }
 
 }  // namespace

@@ -25,6 +25,9 @@ constexpr const char* kXml = R"(<scene version="3.0.0">
     <bsdf type="dielectric"><string name="int_ior" value="water"/></bsdf></shape>
   <shape type="rectangle" id="lamp"><emitter type="area"><rgb name="radiance" value="1, 2, 3"/></emitter></shape>
   <emitter type="point" id="bulb"><point name="position" x="0" y="5" z="0"/><spectrum name="intensity" value="4"/></emitter>
+  <emitter type="spot" id="stage"><transform name="to_world"><lookat origin="0 4 0" target="1 0 0" up="0 0 1"/></transform>
+    <rgb name="intensity" value="3, 2, 1"/><float name="cutoff_angle" value="30"/><float name="beam_width" value="10"/></emitter>
+  <emitter type="directional" id="sun"><vector name="direction" value="1 -2 0"/><float name="irradiance" value="5"/></emitter>
 </scene>)";
 
 constexpr const char* kJson = R"({"type": "scene",
@@ -39,14 +42,18 @@ constexpr const char* kJson = R"({"type": "scene",
   "ball": {"type": "sphere", "center": [1, 2, 3], "radius": 0.5, "bsdf": {"type": "dielectric", "int_ior": "water"}},
   "lamp": {"type": "rectangle", "emitter": {"type": "area", "radiance": {"type": "rgb", "value": [1, 2, 3]}},
     "to_world": [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]},
-  "bulb": {"type": "point", "position": [0, 5, 0], "intensity": {"type": "spectrum", "value": 4}}})";
+  "bulb": {"type": "point", "position": [0, 5, 0], "intensity": {"type": "spectrum", "value": 4}},
+  "stage": {"type": "spot", "intensity": {"type": "rgb", "value": [3, 2, 1]}, "cutoff_angle": 30, "beam_width": 10,
+    "to_world": [{"type": "lookat", "origin": [0, 4, 0], "target": [1, 0, 0], "up": [0, 0, 1]}]},
+  "sun": {"type": "directional", "direction": [1, -2, 0], "irradiance": 5}})";
 
 TEST(SceneForms, XmlAndJsonOfOneSceneGiveTheSameDescription) {
   const SceneFolder folder;
   folder.write("models/a mesh.obj", kObj);
   const std::string from_xml = describe(folder.read_whole_xml(kXml));
   EXPECT_EQ(from_xml, describe(folder.read_json(kJson)));
-  EXPECT_NE(from_xml.find("fov 3 35 clip 0.01 10000\nfilm 320 200 crop 10 0 100 200 filter 1 1"), std::string::npos) << from_xml;
+  EXPECT_NE(from_xml.find("fov 3 35 clip 0.01 10000 lens 0 1\nfilm 320 200 crop 10 0 100 200 filter 1 1"), std::string::npos)
+      << from_xml;
 }
 
 TEST(SceneForms, StepsOfATransformApplyInTheOrderOfTheFile) {

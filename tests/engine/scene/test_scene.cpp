@@ -3,6 +3,7 @@
 
 #include "scene/scene.h"
 #include "support/scene_builder.h"
+#include "support/sky.h"
 
 namespace fluxfarm::testing {
 namespace {
@@ -43,6 +44,46 @@ TEST(Camera, NearAndFarPlanesAreDistancesAlongTheAxis) {
   const Ray ray = camera.ray(0, 50);
   EXPECT_NEAR(camera.depth(ray.origin + ray.t_min * ray.direction), 2, 1e-5f);
   EXPECT_NEAR(camera.depth(ray.origin + ray.t_max * ray.direction), 10, 1e-4f);
+}
+
+TEST(Camera, RaysThroughALensMeetInThePlaneInFocus) {
+  CameraDescription description = camera_of(90, CameraDescription::FovAxis::kX);
+  description.near_clip = 2;
+  description.far_clip = 10;
+  description.aperture_radius = 0.3f;
+  description.focus_distance = 4;
+  const Camera camera(description, 100, 100);
+  ASSERT_TRUE(camera.has_lens());
+  for (const Vec2f u : {Vec2f{0.1f, 0.8f}, Vec2f{0.9f, 0.3f}, Vec2f{0.5f, 0.5f}}) {
+    const Ray ray = camera.ray(0, 50, u);
+    EXPECT_LE(length(ray.origin), 0.3f);
+    EXPECT_NEAR(ray.origin.z, 0, 1e-6f);
+    EXPECT_NEAR(length(ray.direction), 1, 1e-6f);
+    const Vec3f focus = ray.origin + (4 / ray.direction.z) * ray.direction;
+    EXPECT_NEAR(length(focus - Vec3f{4, 0, 4}), 0, 1e-5f);
+    EXPECT_NEAR(camera.depth(ray.origin + ray.t_min * ray.direction), 2, 1e-5f);
+    EXPECT_NEAR(camera.depth(ray.origin + ray.t_max * ray.direction), 10, 1e-4f);
+  }
+}
+
+// A disk of radius r at distance z on the axis of a lens of radius R that is focused at f fills the part (r / (R |1 - z / f|))^2 of
+// the lens. Two-sided z-test at a level of 1e-3.
+TEST(Camera, BlurHasTheSizeOfTheCircleOfConfusion) {
+  const auto seen = [](float focus_distance) {
+    SceneBuilder scene;
+    scene.shape(DiskDescription{Transform::translate(0, 0, 1) * Transform::rotate(0, 1, 0, 180) * Transform::scale(0.02, 0.02, 1)},
+                scene.diffuse(0), 1);
+    scene.look({0, 0, 0}, {0, 0, 1});
+    SceneDescription description = scene.description();
+    description.camera.aperture_radius = 0.1f;
+    description.camera.focus_distance = focus_distance;
+    return measure(description, 1024);
+  };
+  EXPECT_NEAR(seen(1).mean, 1, 1e-6) << "sharp";
+  const Measurement blurred = seen(2);
+  EXPECT_LE(blurred.standard_error, 0.002);
+  EXPECT_LE(blurred.z(0.16), 3.29) << blurred.mean;
+  EXPECT_GT(blurred.z(0.4), 3.29) << "a lens sampled evenly in its radius is told apart";
 }
 
 // The radiance of what the camera sees head-on: a square at z = 1 whose front looks towards the camera, or away.
@@ -88,12 +129,18 @@ TEST(Census, CountsWhatIsThere) {
   builder.shape(cube(Transform()), builder.diffuse(0.5f));
   builder.shape(SphereDescription{{0, 3, 0}, 1}, builder.diffuse(0), 2);
   builder.emitter(PointEmitterDescription{{0, 9, 0}, Rgb{1.0f}});
+  builder.emitter(SpotEmitterDescription{});
+  builder.emitter(DirectionalEmitterDescription{});
+  builder.emitter(EnvmapEmitterDescription{even_sky(1), Transform()});
   builder.look({0, 0, -5}, {0, 0, 0});
   const Scene scene(builder.description(), 1);
   EXPECT_EQ(scene.census().shapes, 2u);
   EXPECT_EQ(scene.census().triangles, 12u);
   EXPECT_EQ(scene.census().area_emitters, 1u);
   EXPECT_EQ(scene.census().point_emitters, 1u);
+  EXPECT_EQ(scene.census().spot_emitters, 1u);
+  EXPECT_EQ(scene.census().directional_emitters, 1u);
+  EXPECT_TRUE(scene.census().environment_map);
   EXPECT_FALSE(scene.census().environment);
   EXPECT_FALSE(scene.census().anisotropic_materials);
 }

@@ -8,6 +8,7 @@
 
 #include "support/error.h"
 #include "support/scene_builder.h"
+#include "support/sky.h"
 #include "worker/codec.h"
 #include "worker/frame_socket.h"
 #include "worker/tile_runner.h"
@@ -28,6 +29,18 @@ SceneDescription small_scene() {
   return description;
 }
 
+// The same with every light that has no shape, through a lens.
+SceneDescription scene_lit_from_outside() {
+  SceneDescription description = small_scene();
+  description.camera.aperture_radius = 0.1f;
+  description.camera.focus_distance = 3;
+  description.emitters = {EnvmapEmitterDescription{patchy_sky(16, 11), Transform()}, ConstantEmitterDescription{Rgb{0.1f}},
+                          DirectionalEmitterDescription{{0, -1, 0}, Rgb{1.0f}},
+                          SpotEmitterDescription{{1, 2, 0}, {0, -1, 0}, Rgb{2.0f}, 40, 30},
+                          PointEmitterDescription{{-1, 1, 0}, Rgb{1.0f}}};
+  return description;
+}
+
 Film render(const SceneDescription& description, std::uint32_t spp, int tile, int threads) {
   const Scene scene(description, 1);
   const auto integrator = make_integrator("path", scene);
@@ -36,12 +49,13 @@ Film render(const SceneDescription& description, std::uint32_t spp, int tile, in
 }
 
 TEST(FrameRenderer, FrameIsIdenticalForAnyTileSizeAndNumberOfThreads) {
-  const SceneDescription description = small_scene();
-  const Image reference = render(description, 52, 64, 1).image({0, 0, 33, 21}, {});
-  for (const auto& [tile, threads] : {std::pair{16, 2}, std::pair{5, 3}, std::pair{1, 1}}) {
-    const Image other = render(description, 52, tile, threads).image({0, 0, 33, 21}, {});
-    for (std::size_t c = 0; c < reference.channels.size(); ++c) {
-      EXPECT_EQ(reference.channels[c].values, other.channels[c].values) << reference.channels[c].name << ", tiles of " << tile;
+  for (const SceneDescription& description : {small_scene(), scene_lit_from_outside()}) {
+    const Image reference = render(description, 52, 64, 1).image({0, 0, 33, 21}, {});
+    for (const auto& [tile, threads] : {std::pair{16, 2}, std::pair{5, 3}, std::pair{1, 1}}) {
+      const Image other = render(description, 52, tile, threads).image({0, 0, 33, 21}, {});
+      for (std::size_t c = 0; c < reference.channels.size(); ++c) {
+        EXPECT_EQ(reference.channels[c].values, other.channels[c].values) << reference.channels[c].name << ", tiles of " << tile;
+      }
     }
   }
 }

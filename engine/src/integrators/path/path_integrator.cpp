@@ -15,6 +15,8 @@ constexpr std::size_t kMaxPaths = kMaxSamplerBatch;
 // Dimensions of a path: the film first, then so many for each bounce.
 enum BounceDimension : std::uint32_t { kEmitterPoint, kDirection, kEmitterChoice, kLobe, kRoulette, kBounceDimensions };
 constexpr std::uint32_t kFilmDimension = 0;
+// Counted from the other end, so that a lens moves no dimension of the paths behind it.
+constexpr std::uint32_t kLensDimension = 0xffffffffu;
 constexpr std::uint32_t dimension_of(int depth, BounceDimension use) {
   return 1 + static_cast<std::uint32_t>(depth) * kBounceDimensions + use;
 }
@@ -84,14 +86,18 @@ class PathGroup {
   void start(std::span<const CameraSample> samples, std::uint64_t seed, std::span<SampleResult> results) {
     sampler_.clear();
     for (const CameraSample& sample : samples) sampler_.add(seed, sample.x, sample.y, sample.index);
+    const Camera& camera = scene_.camera();
     sampler_.draw_2d(kFilmDimension, u_direction_);
+    std::array<Vec2f, kMaxPaths>& u_lens = u_emitter_;  // not in use yet
+    if (camera.has_lens()) sampler_.draw_2d(kLensDimension, u_lens);
     paths_ = samples.size();
     for (std::size_t i = 0; i < paths_; ++i) {
       results[i] = {};
       path_[i] = {.result = &results[i]};
       const Vec2f offset = scene_.pixel_filter().sample(u_direction_[i]);
-      rays_[i] = scene_.camera().ray(static_cast<float>(samples[i].x) + 0.5f + offset.x,
-                                     static_cast<float>(samples[i].y) + 0.5f + offset.y);
+      const float x = static_cast<float>(samples[i].x) + 0.5f + offset.x;
+      const float y = static_cast<float>(samples[i].y) + 0.5f + offset.y;
+      rays_[i] = camera.has_lens() ? camera.ray(x, y, u_lens[i]) : camera.ray(x, y);
     }
   }
 
@@ -102,7 +108,7 @@ class PathGroup {
     const Hit& hit = hits_[i];
     const bool shows_emitters = depth > 0 || !method_.hide_emitters;
     if (hit.shape == Hit::kNone) {
-      if (scene_.environment() && shows_emitters) path.result->radiance += path.throughput * *scene_.environment();
+      if (shows_emitters) add_environment(path, ray.direction);
       return false;
     }
     const PathVertex& vertex = vertices_[i];
@@ -144,6 +150,16 @@ class PathGroup {
     path.result->radiance += path.throughput * emitted * weight;
   }
 
+  // Light from outside. Next-event estimation could have found that of the map, too, but never the constant one.
+  void add_environment(Path& path, Vec3f direction) const {
+    if (scene_.environment()) path.result->radiance += path.throughput * *scene_.environment();
+    const auto& [map, choice_probability] = scene_.environment_map();
+    if (map == nullptr) return;
+    const auto [radiance, pdf] = map->from(direction);
+    const float weight = path.delta ? 1.0f : power_heuristic(path.bsdf_pdf, pdf * choice_probability);
+    path.result->radiance += path.throughput * radiance * weight;
+  }
+
   // Next-event estimation: one emitter, one point of it. Leaves a shadow ray and the light that it stands for.
   void sample_light(std::size_t i, int depth, const PathVertex& vertex) {
     const EmitterChoice& emitters = scene_.emitters();
@@ -155,16 +171,23 @@ class PathGroup {
     const BsdfValue scatter = vertex.bsdf->value(vertex.wo, wi);
     if (scatter.f.is_black()) return;
 
-    // The shadow ray runs between points that are moved off both surfaces.
-    const Vec3f from = vertex.origin_towards(light->wi);
-    const Vec3f to = light->delta ? light->position : offset_point(light->position, light->normal);
-    const Vec3f segment = to - from;
-    const float distance = length(segment);
-    if (!(distance > 0)) return;
-    shadow_rays_[lights_] = {from, segment / distance, 0, distance * (1 - 1e-5f)};
+    const std::optional<Ray> shadow = shadow_ray(vertex, *light);
+    if (!shadow) return;
+    shadow_rays_[lights_] = *shadow;
     const float weight = light->delta ? 1.0f : power_heuristic(light->pdf_solid_angle * choice.probability, scatter.pdf);
     const Rgb arriving = scatter.f * light->weight * (std::fabs(wi.z) * weight / choice.probability);
     pending_[lights_++] = {path_[i].throughput * arriving, path_[i].result};
+  }
+
+  // Runs between points that are moved off both surfaces. Empty: they coincide.
+  static std::optional<Ray> shadow_ray(const PathVertex& vertex, const EmitterSample& light) {
+    const Vec3f from = vertex.origin_towards(light.wi);
+    if (light.distance == kDistant) return Ray{from, light.wi};
+    const Vec3f to = light.delta ? light.position : offset_point(light.position, light.normal);
+    const Vec3f segment = to - from;
+    const float distance = length(segment);
+    if (!(distance > 0)) return std::nullopt;
+    return Ray{from, segment / distance, 0, distance * (1 - 1e-5f)};
   }
 
   void gather_lights(bool coherent) {

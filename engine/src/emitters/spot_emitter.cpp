@@ -1,0 +1,31 @@
+#include "emitters/spot_emitter.h"
+
+namespace fluxfarm {
+
+std::optional<EmitterSample> SpotEmitter::sample(Vec3f reference, Vec2f) const {
+  const Vec3f d = position_ - reference;
+  const float squared = length_squared(d);
+  if (!(squared > 0)) return std::nullopt;
+  const float distance = std::sqrt(squared);
+  const Vec3f wi = d / distance;
+  const float share = falloff(-wi);
+  if (!(share > 0)) return std::nullopt;
+  return EmitterSample{position_, {}, wi, distance, intensity_ * (share / squared), 0, true};
+}
+
+float SpotEmitter::falloff(Vec3f direction) const {
+  // Both sine and cosine: the arc cosine alone has few digits near the axis, where narrow beams live.
+  const float angle = std::atan2(length(cross(axis_, direction)), dot(axis_, direction));
+  if (angle <= beam_width_) return 1;
+  return angle < cutoff_angle_ ? (cutoff_angle_ - angle) / (cutoff_angle_ - beam_width_) : 0.0f;
+}
+
+Rgb SpotEmitter::power() const {
+  // 2 pi times the integral of falloff sin(theta); the beam's part and the slope's part together. In double precision: both
+  // differences are small for narrow cones.
+  const double cutoff = static_cast<double>(cutoff_angle_), beam = static_cast<double>(beam_width_);
+  const double mean_cosine = cutoff > beam ? (std::sin(cutoff) - std::sin(beam)) / (cutoff - beam) : std::cos(cutoff);
+  return intensity_ * (kTwoPi * static_cast<float>(1 - mean_cosine));
+}
+
+}  // namespace fluxfarm

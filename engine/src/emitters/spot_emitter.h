@@ -1,0 +1,27 @@
+// Spot light: a point that shines into a cone, with Mitsuba 3's fall-off, which is linear in the angle.
+#pragma once
+
+#include "emitters/emitter.h"
+
+namespace fluxfarm {
+
+class SpotEmitter final : public Emitter {
+ public:
+  // From `position` along `axis` (world, unit). `intensity` (W sr^-1) holds within `beam_width` of the axis and falls to zero at
+  // `cutoff_angle`; both in radians, 0 <= beam_width <= cutoff_angle < pi.
+  SpotEmitter(Vec3f position, Vec3f axis, Rgb intensity, float cutoff_angle, float beam_width)
+      : position_(position), axis_(axis), intensity_(intensity), cutoff_angle_(cutoff_angle), beam_width_(beam_width) {}
+
+  std::optional<EmitterSample> sample(Vec3f reference, Vec2f u) const override;
+  Rgb power() const override;
+
+  // Share of the full intensity that leaves in `direction` (world, unit).
+  float falloff(Vec3f direction) const;
+
+ private:
+  Vec3f position_, axis_;
+  Rgb intensity_;
+  float cutoff_angle_, beam_width_;
+};
+
+}  // namespace fluxfarm
