@@ -11,10 +11,12 @@
 #include <vector>
 
 #include "materials/material_description.h"
+#include "math/frame.h"
 #include "math/rgb.h"
 #include "math/transform.h"
 #include "math/vec.h"
 #include "sampling/pixel_filter.h"
+#include "textures/texture_description.h"
 
 namespace fluxfarm {
 
@@ -42,6 +44,7 @@ struct DiskDescription {
 struct SphereDescription {
   Vec3f center;
   float radius = 1;
+  Frame axes{};  // the sphere's own axes in the world, unit; left-handed when mirrored
 };
 
 struct ShapeDescription {
@@ -95,6 +98,7 @@ struct MethodDescription {
 
 struct SceneDescription {
   std::vector<MaterialDescription> materials;
+  std::vector<TextureDescription> textures;
   std::vector<ShapeDescription> shapes;
   std::vector<EmitterDescription> emitters;
   CameraDescription camera;
