@@ -21,12 +21,12 @@ constexpr Tag kTags[] = {
     {"film", PluginKind::kFilm},
     {"rfilter", PluginKind::kFilter},
     {"bsdf", PluginKind::kBsdf},
+    {"texture", PluginKind::kTexture},
     {"shape", PluginKind::kShape},
     {"emitter", PluginKind::kEmitter},
     {"ref", PluginKind::kReference},
     {"medium", PluginKind::kUnsupported},
     {"phase", PluginKind::kUnsupported},
-    {"texture", PluginKind::kUnsupported},
     {"volume", PluginKind::kUnsupported},
     {"subsurface", PluginKind::kUnsupported},
 };
@@ -47,7 +47,7 @@ constexpr KnownPlugin kKnownPlugins[] = {
     {"roughplastic", PluginKind::kBsdf},   {"obj", PluginKind::kShape},           {"ply", PluginKind::kShape},
     {"rectangle", PluginKind::kShape},     {"cube", PluginKind::kShape},          {"sphere", PluginKind::kShape},
     {"disk", PluginKind::kShape},          {"area", PluginKind::kEmitter},        {"point", PluginKind::kEmitter},
-    {"constant", PluginKind::kEmitter},
+    {"constant", PluginKind::kEmitter},    {"bitmap", PluginKind::kTexture},      {"checkerboard", PluginKind::kTexture},
 };
 
 std::string known_types(PluginKind kind) {
