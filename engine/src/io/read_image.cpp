@@ -65,7 +65,7 @@ Channels channels_of(const ImageHeader& header, const std::string& name) {
   if (names.size() == 1 || (names.size() == 2 && names[1] == "A")) return {0, 1};
   throw SceneError(name, names.empty()
                              ? std::string("the image has no channels, expected R, G and B, or one")
-                             : "the image has the channels " + printable(joined(names)) + ", expected R, G and B, or one");
+                             : "the image has the channels " + in_quotes(joined(names)) + ", expected R, G and B, or one");
 }
 
 void check_header(const ImageHeader& header, const std::string& name) {

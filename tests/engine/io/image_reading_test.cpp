@@ -116,9 +116,9 @@ TEST_F(Images, DeepExrIsRefused) {
 TEST_F(Images, ClaimsOfManyPixelsAreRefusedBeforeMemoryIsTaken) {
   const std::string size = "the image has 60000 x 60000 pixels, expected sides of 1 to 65536 and at most 134217728 pixels";
   EXPECT_EQ(read_error(stored("bomb.png")), "bomb.png: " + size);
-  // Start of image and a progressive frame header of 60000 x 60000.
-  const std::string jpeg{"\xff\xd8\xff\xe0\x00\x04xx\xff\xc2\x00\x11\x08\xea\x60\xea\x60\x03\x01\x22\x00\x02\x11\x01\x03\x11\x01",
-                         27};
+  // Start of image, an empty segment, a stray byte, and a progressive frame header of 60000 x 60000.
+  const std::string jpeg{
+      "\xff\xd8\xff\xe0\x00\x04xx\x00\xff\xff\xc2\x00\x11\x08\xea\x60\xea\x60\x03\x01\x22\x00\x02\x11\x01\x03\x11\x01", 29};
   EXPECT_EQ(read_error(write("bomb.jpg", jpeg)), "bomb.jpg: " + size);
   EXPECT_EQ(read_error(write("bomb.hdr", "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 60000 +X 60000\n")), "bomb.hdr: " + size);
 
@@ -132,7 +132,7 @@ TEST_F(Images, ClaimsOfManyPixelsAreRefusedBeforeMemoryIsTaken) {
 
 TEST_F(Images, OtherChannelsAreNamed) {
   EXPECT_EQ(read_error(write("a.exr", exr({"U", "V", "W"}))),
-            "a.exr: the image has the channels U, V, W, expected R, G and B, or one");
+            "a.exr: the image has the channels \"U, V, W\", expected R, G and B, or one");
   // An empty list of channels instead of the one with Y.
   std::string bytes = bytes_of(write("y.exr", exr({"Y"})));
   const std::size_t list = bytes.find(std::string("channels\0chlist\0", 16));
