@@ -9,7 +9,7 @@
 namespace fluxfarm {
 namespace {
 
-ImageSample sample_of(OIIO::TypeDesc type) {
+ImageSample sample_of(const OIIO::TypeDesc& type) {
   if (type == OIIO::TypeDesc::UINT8) return ImageSample::kUint8;
   if (type == OIIO::TypeDesc::UINT16) return ImageSample::kUint16;
   return ImageSample::kFloat;
@@ -32,7 +32,7 @@ class OiioFile final : public ImageFile {
   void read(int first, int count, float* texels) override { read(first, count, OIIO::TypeDesc::FLOAT, texels); }
 
  private:
-  void read(int first, int count, OIIO::TypeDesc type, void* texels) {
+  void read(int first, int count, const OIIO::TypeDesc& type, void* texels) {
     if (!input_->read_image(0, 0, first, first + count, type, texels)) throw std::runtime_error(input_->geterror());
   }
 
