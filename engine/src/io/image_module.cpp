@@ -23,7 +23,7 @@ class OiioFile final : public ImageFile {
     if (!input_) throw std::runtime_error(OIIO::geterror());
     OIIO::ImageSpec settings, spec;
     settings.attribute("oiio:UnassociatedAlpha", 1);  // colours as they are stored
-    if (!input_->open(path, spec, settings)) throw std::runtime_error(input_->geterror());
+    if (!input_->open(path, spec, settings)) fail();
     header_ = {spec.width, spec.height, spec.depth, spec.channelnames, sample_of(spec.format), spec.deep};
   }
 
@@ -33,8 +33,10 @@ class OiioFile final : public ImageFile {
 
  private:
   void read(int first, int count, const OIIO::TypeDesc& type, void* texels) {
-    if (!input_->read_image(0, 0, first, first + count, type, texels)) throw std::runtime_error(input_->geterror());
+    if (!input_->read_image(0, 0, first, first + count, type, texels)) fail();
   }
+
+  [[noreturn]] void fail() const { throw std::runtime_error(input_->geterror()); }
 
   std::unique_ptr<OIIO::ImageInput> input_;
   ImageHeader header_;
