@@ -14,19 +14,21 @@ ENGINE = {
     "sampling": {"support", "math"},
     "film": {"support", "math"},
     "geometry": SHADING - {"geometry"},
-    "materials": SHADING,
+    "textures": {"support", "math"},
+    "materials": SHADING | {"textures"},
     "emitters": SHADING,
     "accel": SHADING,
-    "scene": SHADING | {"materials", "emitters", "accel"},
-    "integrators": SHADING | {"materials", "emitters", "accel", "scene"},
-    "io": {"support", "math", "film", "scene", "materials", "sampling"},
-    "worker": {*SHADING, "materials", "emitters", "accel", "scene", "integrators", "film", "io"},
+    "scene": SHADING | {"textures", "materials", "emitters", "accel"},
+    "integrators": SHADING | {"textures", "materials", "emitters", "accel", "scene"},
+    "io": {"support", "math", "film", "scene", "textures", "materials", "sampling"},
+    "worker": {*SHADING, "textures", "materials", "emitters", "accel", "scene", "integrators", "film", "io"},
 }
 ENGINE["apps"] = {*ENGINE["worker"], "worker"}
 # Of these rooms io may use the plain descriptions only.
 IO_HEADERS = {
     "scene": {"scene/description.h"},
     "materials": {"materials/material_description.h"},
+    "textures": {"textures/texture_description.h", "textures/texture_image.h"},
     "sampling": {"sampling/pixel_filter.h"},
 }
 # Third-party headers and the only places that may see them.
@@ -35,6 +37,7 @@ THIRD_PARTY = {
     r"(Imf|Imath|Iex|OpenEXR)": ["io/"],
     r"pugixml": ["io/"],
     r"png\.h": ["io/"],
+    r"OpenImageIO/": ["io/image_module.cpp"],
     r".*\.pb\.h": ["worker/codec.cpp"],
     r"nlohmann/": ["io/", "worker/plan.cpp", "apps/"],
     r"CLI/": ["apps/"],

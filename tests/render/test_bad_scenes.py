@@ -20,6 +20,11 @@ def ply_shape(name: str) -> str:
     return f'<shape type="ply"><string name="filename" value="{name}"/></shape>'
 
 
+def painted(name: str) -> str:
+    bitmap = f'<texture type="bitmap" name="reflectance"><string name="filename" value="{name}"/></texture>'
+    return f'<shape type="sphere"><bsdf type="diffuse">{bitmap}</bsdf></shape>'
+
+
 def ascii_ply(vertices: list[str], faces: list[str], claimed: int | None = None) -> bytes:
     head = f"ply\nformat ascii 1.0\nelement vertex {claimed or len(vertices)}\n"
     head += "property float x\nproperty float y\nproperty float z\n"
@@ -33,6 +38,7 @@ BINARY_HEAD = (
     b"element face 1\nproperty list uchar int vertex_indices\nend_header\n"
 )
 NAN_PLY = BINARY_HEAD + struct.pack("<9fB3i", 0, 0, 0, 1, float("nan"), 0, 0, 1, 0, 3, 0, 1, 2)
+HDR_BOMB = b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 60000 +X 60000\n"
 BOMB = '<!DOCTYPE s [<!ENTITY a "aaaaaaaa"><!ENTITY b "&a;&a;&a;&a;">]>' + scene(SENSOR, LAMP)
 
 # name, files beside the scene, scene text, words that the reason must have
@@ -67,6 +73,14 @@ CASES = [
         scene(SENSOR, LAMP, ply_shape("a.ply")),
         ["a.ply"],
     ),
+    ("missing image", {}, scene(SENSOR, LAMP, painted("none.png")), ["scene.xml:4", "none.png"]),
+    (
+        "no image",
+        {"a.png": b"hello"},
+        scene(SENSOR, LAMP, painted("a.png")),
+        ["a.png", "expected EXR, HDR, PNG or JPEG"],
+    ),
+    ("image of many pixels", {"a.hdr": HDR_BOMB}, scene(SENSOR, LAMP, painted("a.hdr")), ["a.hdr", "60000 x 60000"]),
     ("no sensor", {}, scene(LAMP), ["sensor"]),
     (
         "size 0",

@@ -1,6 +1,8 @@
 """fluxfarm-engine as a command: reports, exit codes, and bad input that is refused before any work is done."""
 
 import json
+import os
+import shutil
 import subprocess
 from pathlib import Path
 
@@ -77,3 +79,38 @@ def test_image_header_names_what_made_it(tmp_path: Path) -> None:
     assert "Embree" in header["fluxfarm.engine"]
     assert header["fluxfarm.noiseInterval95"] == pytest.approx(2.364624)
     assert read_exr(tmp_path / "out.exr")["error.noise"].min() >= 0
+
+
+TEXTURED = """<scene version="3.0.0">
+<sensor type="perspective">
+<film type="hdrfilm"><integer name="width" value="8"/><integer name="height" value="8"/></film>
+<transform name="to_world"><lookat origin="0, 0, 4" target="0, 0, 0" up="0, 1, 0"/></transform></sensor>
+<emitter type="constant"><rgb name="radiance" value="1, 1, 1"/></emitter>
+<shape type="rectangle"><bsdf type="diffuse"><texture type="TYPE" name="reflectance"/></bsdf></shape></scene>
+"""
+
+
+def loads_image_library(scene: Path, out: Path) -> bool:
+    """Whether the dynamic linker opens OpenImageIO while the scene is rendered."""
+    result = subprocess.run(
+        [ENGINE, "render", scene, "-o", out, "--spp", "1"],
+        capture_output=True,
+        text=True,
+        check=True,
+        env={**os.environ, "LD_DEBUG": "files"},
+    )
+    assert "libembree" in result.stderr, "the linker says nothing"
+    return "libOpenImageIO" in result.stderr
+
+
+def test_image_library_is_opened_for_the_first_image_only(tmp_path: Path) -> None:
+    scene = tmp_path / "scene.xml"
+    assert not loads_image_library(SCENE, tmp_path / "out.exr")
+    scene.write_text(TEXTURED.replace("TYPE", "checkerboard"))
+    assert not loads_image_library(scene, tmp_path / "out.exr")
+    shutil.copy(ROOT / "tests/engine/io/images/orange.jpg", tmp_path)
+    bitmap = 'bitmap" name="reflectance"><string name="filename" value="orange.jpg"/></texture>'
+    scene.write_text(TEXTURED.replace('TYPE" name="reflectance"/>', bitmap))
+    assert loads_image_library(scene, tmp_path / "out.exr"), "twin: a scene with an image does open it"
+    pixel = [float(read_exr(tmp_path / "out.exr")[c][4, 4]) for c in "RGB"]
+    assert pixel == pytest.approx([0.5776, 0.1274, 0.0319], abs=0.02)

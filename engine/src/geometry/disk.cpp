@@ -2,8 +2,13 @@
 
 namespace fluxfarm {
 
-Disk::Disk(Vec3f center, Vec3f normal, Vec3f tangent, float radius)
-    : center_(center), normal_(normal), tangent_(tangent), bitangent_(cross(normal, tangent)), radius_(radius) {}
+Disk::Disk(Vec3f center, Vec3f normal, Vec3f tangent, float radius, bool clockwise)
+    : center_(center),
+      normal_(normal),
+      tangent_(tangent),
+      bitangent_(cross(normal, tangent)),
+      radius_(radius),
+      turn_(clockwise ? -1.0f : 1.0f) {}
 
 SurfacePoint Disk::surface_point(const Ray& ray, const Hit& hit) const {
   const Vec3f p = ray.origin + hit.t * ray.direction;
@@ -15,6 +20,11 @@ Vec3f Disk::tangent(const SurfacePoint& point, const Hit&) const {
   const Vec3f d = point.position - center_;
   const float r = length(d);
   return r > 0 ? d / r : tangent_;
+}
+
+Vec2f Disk::uv(const SurfacePoint& point, const Hit&) const {
+  const Vec3f d = point.position - center_;
+  return {length(d) / radius_, turn_fraction(turn_ * dot(d, bitangent_), dot(d, tangent_))};
 }
 
 std::optional<ShapeSample> Disk::sample(Vec3f reference, Vec2f u) const {

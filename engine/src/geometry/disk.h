@@ -8,11 +8,14 @@ namespace fluxfarm {
 
 class Disk final : public Shape {
  public:
-  // `normal` is unit and on the front side; `tangent` any unit vector in the plane; radius > 0, m.
-  Disk(Vec3f center, Vec3f normal, Vec3f tangent, float radius);
+  // `normal` is unit and on the front side; `tangent` any unit vector in the plane; radius > 0, m. Texture coordinates run from
+  // `tangent` counter-clockwise seen from the front, or clockwise if `clockwise`.
+  Disk(Vec3f center, Vec3f normal, Vec3f tangent, float radius, bool clockwise = false);
 
   SurfacePoint surface_point(const Ray& ray, const Hit& hit) const override;
   Vec3f tangent(const SurfacePoint& point, const Hit& hit) const override;
+  // u is the distance from the centre over the radius, v the angle over 2 pi.
+  Vec2f uv(const SurfacePoint& point, const Hit& hit) const override;
   std::optional<ShapeSample> sample(Vec3f reference, Vec2f u) const override;
   float pdf(Vec3f reference, const SurfacePoint& point, std::uint32_t primitive, Vec3f wi, float distance) const override;
   float area() const override { return kPi * radius_ * radius_; }
@@ -25,6 +28,7 @@ class Disk final : public Shape {
  private:
   Vec3f center_, normal_, tangent_, bitangent_;
   float radius_;
+  float turn_;  // -1 when clockwise
 };
 
 }  // namespace fluxfarm

@@ -3,6 +3,16 @@
 #include "geometry/spherical_rectangle.h"
 
 namespace fluxfarm {
+namespace {
+
+// Of a hit, in lengths of the edges. Two triangles: corners 0 1 2 and 0 2 3.
+Vec2f place(const Hit& hit) {
+  const auto second = static_cast<float>(hit.primitive);
+  return {hit.u + (1 - second) * hit.v, hit.v + second * hit.u};
+}
+
+}  // namespace
+
 Rectangle::Rectangle(Vec3f corner, Vec3f edge_u, Vec3f edge_v, bool flipped)
     : corner_(corner), edge_u_(edge_u), edge_v_(edge_v), length_u_(length(edge_u)), length_v_(length(edge_v)) {
   const Vec3f n = cross(edge_u, edge_v);
@@ -14,12 +24,11 @@ Rectangle::Rectangle(Vec3f corner, Vec3f edge_u, Vec3f edge_v, bool flipped)
 }
 
 SurfacePoint Rectangle::surface_point(const Ray&, const Hit& hit) const {
-  // Two triangles: corners 0 1 2 and 0 2 3.
-  const auto second = static_cast<float>(hit.primitive);
-  const float a = hit.u + (1 - second) * hit.v;
-  const float b = hit.v + second * hit.u;
-  return {corner_ + a * edge_u_ + b * edge_v_, normal_, normal_};
+  const Vec2f p = place(hit);
+  return {corner_ + p.x * edge_u_ + p.y * edge_v_, normal_, normal_};
 }
+
+Vec2f Rectangle::uv(const SurfacePoint&, const Hit& hit) const { return place(hit); }
 
 bool Rectangle::samples_solid_angle(Vec3f reference) const {
   return right_angled_ && looks_large(area_, corner_ + 0.5f * (edge_u_ + edge_v_), normal_, reference);

@@ -33,6 +33,9 @@ class Shape {
   // Direction of increasing u at a hit (world, unit, not necessarily orthogonal to the normal); frames of anisotropic materials.
   virtual Vec3f tangent(const SurfacePoint& point, const Hit& hit) const = 0;
 
+  // Texture coordinates at a hit, as Mitsuba 3 defines them for the shape.
+  virtual Vec2f uv(const SurfacePoint& point, const Hit& hit) const = 0;
+
   // Chooses a point of the surface as seen from `reference`. Empty: nothing of it can be seen with that random number.
   virtual std::optional<ShapeSample> sample(Vec3f reference, Vec2f u) const = 0;
 
@@ -53,6 +56,12 @@ inline bool looks_large(float area, Vec3f centre, Vec3f normal, Vec3f reference)
   const Vec3f d = reference - centre;
   const float height = dot(d, normal);
   return area > kFrom * length_squared(d) && height * height > kMinHeight * kMinHeight * area;
+}
+
+// The angle of (x, y) from the x axis as a part of a full turn, in [0,1].
+inline float turn_fraction(float y, float x) {
+  const float turn = std::atan2(y, x) * (1 / kTwoPi);
+  return turn < 0 ? turn + 1 : turn;
 }
 
 // Density per solid angle of a point chosen with `pdf_area` (m^-2); 0 when the surface is seen edge-on.

@@ -13,9 +13,15 @@ SurfacePoint Sphere::surface_point(const Ray& ray, const Hit& hit) const {
 
 Vec3f Sphere::tangent(const SurfacePoint& point, const Hit&) const {
   // Along the parallels around z; anything at the poles.
-  const Vec3f local = point.position - center_;
+  const Vec3f local = axes_.to_local(point.position - center_);
   const float horizontal = std::sqrt(local.x * local.x + local.y * local.y);
-  return horizontal > 0 ? Vec3f{-local.y / horizontal, local.x / horizontal, 0} : Vec3f{1, 0, 0};
+  return horizontal > 0 ? axes_.to_world({-local.y / horizontal, local.x / horizontal, 0}) : axes_.s;
+}
+
+Vec2f Sphere::uv(const SurfacePoint& point, const Hit&) const {
+  const Vec3f local = axes_.to_local(point.position - center_);
+  const float horizontal = std::sqrt(local.x * local.x + local.y * local.y);
+  return {turn_fraction(local.y, local.x), std::atan2(horizontal, local.z) * kInvPi};
 }
 
 float Sphere::one_minus_cos(float d2) const {

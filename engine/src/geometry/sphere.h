@@ -2,16 +2,21 @@
 #pragma once
 
 #include "geometry/shape.h"
+#include "math/frame.h"
 
 namespace fluxfarm {
 
 class Sphere final : public Shape {
  public:
-  // `inward`: the front side is the inner one. radius > 0, m.
-  Sphere(Vec3f center, float radius, bool inward) : center_(center), radius_(radius), inward_(inward) {}
+  // `inward`: the front side is the inner one. radius > 0, m. `axes`: the sphere's own x, y and z axes in the world, for texture
+  // coordinates and tangents; they may be left-handed.
+  Sphere(Vec3f center, float radius, bool inward, const Frame& axes = {})
+      : center_(center), radius_(radius), inward_(inward), axes_(axes) {}
 
   SurfacePoint surface_point(const Ray& ray, const Hit& hit) const override;
   Vec3f tangent(const SurfacePoint& point, const Hit& hit) const override;
+  // u is the longitude over 2 pi, from the x axis towards y; v the colatitude over pi, from the z axis.
+  Vec2f uv(const SurfacePoint& point, const Hit& hit) const override;
   // From outside by solid angle, from inside (or on the surface) by area.
   std::optional<ShapeSample> sample(Vec3f reference, Vec2f u) const override;
   float pdf(Vec3f reference, const SurfacePoint& point, std::uint32_t primitive, Vec3f wi, float distance) const override;
@@ -29,6 +34,7 @@ class Sphere final : public Shape {
   Vec3f center_;
   float radius_;
   bool inward_;
+  Frame axes_;
 };
 
 }  // namespace fluxfarm

@@ -53,6 +53,14 @@ Vec3f TriangleMesh::tangent(const SurfacePoint&, const Hit& hit) const {
   return determinant != 0 && length_squared(d) > 0 ? normalize(d) : normalize(e1);
 }
 
+Vec2f TriangleMesh::uv(const SurfacePoint&, const Hit& hit) const {
+  if (data_.uvs.empty()) return {hit.u, hit.v};
+  const std::uint32_t* index = data_.indices.data() + 3 * static_cast<std::size_t>(hit.primitive);
+  const Vec2f a = data_.uvs[index[0]], b = data_.uvs[index[1]], c = data_.uvs[index[2]];
+  const float first = 1 - hit.u - hit.v;
+  return {first * a.x + hit.u * b.x + hit.v * c.x, first * a.y + hit.u * b.y + hit.v * c.y};
+}
+
 std::optional<ShapeSample> TriangleMesh::sample(Vec3f reference, Vec2f u) const {
   const DiscreteDistribution::Choice choice = by_area_.sample(u.x);
   const auto triangle = static_cast<std::uint32_t>(choice.index);

@@ -22,6 +22,8 @@ class TriangleMesh final : public Shape {
 
   SurfacePoint surface_point(const Ray& ray, const Hit& hit) const override;
   Vec3f tangent(const SurfacePoint& point, const Hit& hit) const override;
+  // Those of the vertices, between them; the barycentric weights of the second and third vertex if there are none.
+  Vec2f uv(const SurfacePoint& point, const Hit& hit) const override;
   std::optional<ShapeSample> sample(Vec3f reference, Vec2f u) const override;
   float pdf(Vec3f reference, const SurfacePoint& point, std::uint32_t primitive, Vec3f wi, float distance) const override;
   float area() const override { return area_; }

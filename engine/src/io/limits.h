@@ -15,5 +15,6 @@ inline constexpr std::size_t kMaxAttributeLength = 64u << 10;                 //
 inline constexpr std::size_t kMaxNameLength = 256;                            // of an XML element or a JSON member
 inline constexpr std::int64_t kMaxImageSide = 65536;                          // pixels
 inline constexpr std::int64_t kMaxImagePixels = std::int64_t{1} << 27;
+inline constexpr std::size_t kMaxTexturePixels = std::size_t{1} << 29;  // of all images of a scene together
 
 }  // namespace fluxfarm

@@ -103,6 +103,8 @@ class XmlSceneReader {
     const std::optional<PluginKind> kind = kind_of_tag(tag);
     if (!kind || *kind == PluginKind::kScene) throw SceneError(place, "unknown element <" + tag + "> in " + title(parent));
     parent.children.push_back(read_plugin(source, element, tag, *kind));
+    PluginNode& child = parent.children.back();
+    child.name = property_name(source, parent, child.name);
   }
 
   PluginNode read_plugin(const Source& source, const pugi::xml_node& element, const std::string& tag, PluginKind kind) {

@@ -23,12 +23,12 @@ PluginsById plugins_by_id(const PluginNode& scene) {
   return plugins;
 }
 
-const PluginNode& referenced_bsdf(const PluginNode& reference, const PluginsById& plugins) {
+const PluginNode& referenced(const PluginNode& reference, PluginKind kind, const PluginsById& plugins) {
   const auto found = plugins.find(reference.id);
   if (found == plugins.end()) throw SceneError(reference.place, "nothing in the scene has the id " + in_quotes(reference.id));
-  if (found->second->kind != PluginKind::kBsdf) {
+  if (found->second->kind != kind) {
     throw SceneError(reference.place, "the id " + in_quotes(reference.id) + " belongs to a " + title(*found->second) + " at " +
-                                          found->second->place + ", expected a bsdf");
+                                          found->second->place + ", expected a " + std::string(tag_of(kind)));
   }
   return *found->second;
 }

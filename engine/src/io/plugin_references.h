@@ -13,7 +13,7 @@ using PluginsById = std::unordered_map<std::string, const PluginNode*>;
 // Every plugin of the tree that has an id. Throws SceneError if two share one.
 PluginsById plugins_by_id(const PluginNode& scene);
 
-// The bsdf that a reference means. Throws SceneError if the id is unknown or belongs to something else.
-const PluginNode& referenced_bsdf(const PluginNode& reference, const PluginsById& plugins);
+// The plugin of that kind that a reference means. Throws SceneError if the id is unknown or belongs to something else.
+const PluginNode& referenced(const PluginNode& reference, PluginKind kind, const PluginsById& plugins);
 
 }  // namespace fluxfarm

@@ -17,7 +17,20 @@
 
 namespace fluxfarm {
 
-enum class PluginKind { kScene, kIntegrator, kSensor, kSampler, kFilm, kFilter, kBsdf, kShape, kEmitter, kReference, kUnsupported };
+enum class PluginKind {
+  kScene,
+  kIntegrator,
+  kSensor,
+  kSampler,
+  kFilm,
+  kFilter,
+  kBsdf,
+  kTexture,
+  kShape,
+  kEmitter,
+  kReference,
+  kUnsupported
+};
 
 using Triple = std::array<double, 3>;  // a point or a vector
 

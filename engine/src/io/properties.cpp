@@ -145,6 +145,19 @@ const PropertyValue* Properties::raw(const std::string& name) {
   return property ? &property->value : nullptr;
 }
 
+const PluginNode* Properties::texture(const std::string& name) {
+  asked_textures_.insert(name);
+  const PluginNode* found = nullptr;
+  for (const PluginNode& child : node_.children) {
+    if (child.name != name || (child.kind != PluginKind::kTexture && child.kind != PluginKind::kReference)) continue;
+    if (found != nullptr || has(name)) {
+      throw SceneError(child.place, title(node_) + " has the parameter " + in_quotes(name) + " twice");
+    }
+    found = &child;
+  }
+  return found;
+}
+
 void Properties::ignore(std::initializer_list<const char*> names) { asked_.insert(names.begin(), names.end()); }
 
 void Properties::finish() const {
@@ -153,6 +166,18 @@ void Properties::finish() const {
     const std::vector<std::string> known(asked_.begin(), asked_.end());
     throw SceneError(property.place, title(node_) + " has no parameter " + in_quotes(property.name) +
                                          (known.empty() ? "; it takes none" : "; it takes " + joined(known)));
+  }
+}
+
+void Properties::finish_textures() const {
+  const std::vector<std::string> names(asked_textures_.begin(), asked_textures_.end());
+  const std::string takes = names.empty() ? "no plugins" : "textures named " + joined(names);
+  for (const PluginNode& child : node_.children) {
+    const bool texture = child.kind == PluginKind::kTexture || child.kind == PluginKind::kReference;
+    if (!texture || asked_textures_.count(child.name) == 0) {
+      const std::string as = texture && !child.name.empty() ? " as " + in_quotes(child.name) : "";
+      throw SceneError(child.place, title(node_) + " cannot hold a " + title(child) + as + "; it takes " + takes);
+    }
   }
 }
 

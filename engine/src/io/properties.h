@@ -44,11 +44,17 @@ class Properties {
   // A text, or a number: for indices of refraction, which may be given by name. Nothing if absent.
   const PropertyValue* raw(const std::string& name);
 
+  // The texture, or the reference to one, that stands inside the plugin under that name; null if there is none. Throws SceneError
+  // if there are two, or a plain value as well.
+  const PluginNode* texture(const std::string& name);
+
   // Parameters that are accepted and have no effect here; README.md lists them.
   void ignore(std::initializer_list<const char*> names);
 
   // Throws SceneError for the first parameter that nobody asked for. Call it after the last read.
   void finish() const;
+  // The same for what stands inside the plugin, if textures are all that it takes.
+  void finish_textures() const;
 
   // Throws SceneError at the place of the parameter (of the plugin if it is absent).
   [[noreturn]] void fail(const std::string& name, const std::string& what) const;
@@ -59,7 +65,7 @@ class Properties {
   const Value& expect(const Property& property, const char* expected) const;
 
   const PluginNode& node_;
-  std::set<std::string> asked_;
+  std::set<std::string> asked_, asked_textures_;
 };
 
 // The children of a plugin that may not have any; throws SceneError for the first. `takes` says what the plugin does take.

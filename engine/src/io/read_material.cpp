@@ -27,16 +27,27 @@ float read_relative_ior(Properties& properties, const char* default_interior) {
   return interior / read_ior(properties, "ext_ior", "air");
 }
 
-DielectricDescription read_dielectric(Properties& properties) {
+// A colour that may be a texture: then its constant factor is 1 and `texture` its index.
+Rgb read_colour(Properties& properties, TextureReader& textures, const std::string& name, Rgb otherwise, int& texture) {
+  if (const PluginNode* node = properties.texture(name)) {
+    texture = textures.read(*node);
+    return Rgb(1);
+  }
+  return properties.rgb(name, otherwise, kUnitInterval);
+}
+
+DielectricDescription read_dielectric(Properties& properties, TextureReader& textures) {
   DielectricDescription result;
   result.eta = read_relative_ior(properties, "bk7");
-  result.specular_reflectance = properties.rgb("specular_reflectance", Rgb(1), kUnitInterval);
-  result.specular_transmittance = properties.rgb("specular_transmittance", Rgb(1), kUnitInterval);
+  result.specular_reflectance =
+      read_colour(properties, textures, "specular_reflectance", Rgb(1), result.specular_reflectance_texture);
+  result.specular_transmittance =
+      read_colour(properties, textures, "specular_transmittance", Rgb(1), result.specular_transmittance_texture);
   return result;
 }
 
 // Without eta, k and material it is a perfect mirror, as in Mitsuba.
-ConductorDescription read_conductor(Properties& properties) {
+ConductorDescription read_conductor(Properties& properties, TextureReader& textures) {
   ConductorDescription result;
   const std::string material = properties.text("material", "none");
   const bool explicit_index = properties.has("eta") || properties.has("k");
@@ -54,15 +65,18 @@ ConductorDescription read_conductor(Properties& properties) {
   const float exterior = properties.has("ext_eta") ? read_ior(properties, "ext_eta", "vacuum") : 1.0f;
   result.eta = result.eta / exterior;
   result.k = result.k / exterior;
-  result.specular_reflectance = properties.rgb("specular_reflectance", Rgb(1), kUnitInterval);
+  result.specular_reflectance =
+      read_colour(properties, textures, "specular_reflectance", Rgb(1), result.specular_reflectance_texture);
   return result;
 }
 
-PlasticDescription read_plastic(Properties& properties) {
+PlasticDescription read_plastic(Properties& properties, TextureReader& textures) {
   PlasticDescription result;
   result.eta = read_relative_ior(properties, "polypropylene");
-  result.diffuse_reflectance = properties.rgb("diffuse_reflectance", Rgb(0.5f), kUnitInterval);
-  result.specular_reflectance = properties.rgb("specular_reflectance", Rgb(1), kUnitInterval);
+  result.diffuse_reflectance =
+      read_colour(properties, textures, "diffuse_reflectance", Rgb(0.5f), result.diffuse_reflectance_texture);
+  result.specular_reflectance =
+      read_colour(properties, textures, "specular_reflectance", Rgb(1), result.specular_reflectance_texture);
   result.nonlinear = properties.boolean("nonlinear", false);
   return result;
 }
@@ -89,29 +103,42 @@ Roughness read_roughness(Properties& properties, bool anisotropic) {
   return result;
 }
 
-MaterialDescription read_simple(const PluginNode& node) {
-  check_no_children(node);
+RoughConductorDescription read_rough_conductor(Properties& properties, TextureReader& textures) {
+  RoughConductorDescription result{read_conductor(properties, textures), {}};
+  const PluginNode* alpha = properties.texture("alpha");
+  result.roughness = read_roughness(properties, true);
+  if (alpha == nullptr) return result;
+  if (properties.has("alpha_u")) properties.fail("alpha_u", "but alpha is given, too, as a texture");
+  result.roughness.alpha_u = result.roughness.alpha_v = 1;
+  result.roughness.alpha_texture = textures.read(*alpha);
+  return result;
+}
+
+MaterialDescription read_simple(const PluginNode& node, TextureReader& textures) {
   Properties properties(node);
   MaterialDescription result;
   if (node.type == "diffuse") {
-    result = DiffuseDescription{properties.rgb("reflectance", Rgb(0.5f), kUnitInterval)};
+    DiffuseDescription diffuse;
+    diffuse.reflectance = read_colour(properties, textures, "reflectance", Rgb(0.5f), diffuse.reflectance_texture);
+    result = diffuse;
   } else if (node.type == "dielectric") {
-    result = read_dielectric(properties);
+    result = read_dielectric(properties, textures);
   } else if (node.type == "roughdielectric") {
-    const DielectricDescription dielectric = read_dielectric(properties);
+    const DielectricDescription dielectric = read_dielectric(properties, textures);
     if (dielectric.eta == 1)
       throw SceneError(node.place, title(node) + ": int_ior and ext_ior are equal, expected two different ones");
     result = RoughDielectricDescription{dielectric, read_roughness(properties, true)};
   } else if (node.type == "conductor") {
-    result = read_conductor(properties);
+    result = read_conductor(properties, textures);
   } else if (node.type == "roughconductor") {
-    result = RoughConductorDescription{read_conductor(properties), read_roughness(properties, true)};
+    result = read_rough_conductor(properties, textures);
   } else if (node.type == "plastic") {
-    result = read_plastic(properties);
+    result = read_plastic(properties, textures);
   } else {
-    result = RoughPlasticDescription{read_plastic(properties), read_roughness(properties, false)};
+    result = RoughPlasticDescription{read_plastic(properties, textures), read_roughness(properties, false)};
   }
   properties.finish();
+  properties.finish_textures();
   return result;
 }
 
@@ -122,11 +149,12 @@ bool transmits(const MaterialDescription& material) {
 }  // namespace
 
 int MaterialReader::read(const PluginNode& bsdf_or_reference) {
-  const PluginNode& node =
-      bsdf_or_reference.kind == PluginKind::kReference ? referenced_bsdf(bsdf_or_reference, plugins_) : bsdf_or_reference;
+  const PluginNode& node = bsdf_or_reference.kind == PluginKind::kReference
+                               ? referenced(bsdf_or_reference, PluginKind::kBsdf, plugins_)
+                               : bsdf_or_reference;
   if (const auto known = indices_.find(&node); known != indices_.end()) return known->second;
   if (!being_read_.insert(&node).second) throw SceneError(bsdf_or_reference.place, title(node) + " contains itself");
-  const MaterialDescription material = node.type == "twosided" ? read_twosided(node) : read_simple(node);
+  const MaterialDescription material = node.type == "twosided" ? read_twosided(node) : read_simple(node, textures_);
   being_read_.erase(&node);
   materials_.push_back(material);
   return indices_[&node] = static_cast<int>(materials_.size()) - 1;

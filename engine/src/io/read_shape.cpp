@@ -14,6 +14,20 @@
 namespace fluxfarm {
 namespace {
 
+Vec3f unit_axis(const Transform& transform, std::size_t j) {
+  const auto& m = transform.matrix();
+  const double scale = axis_scale(transform, j);
+  return {static_cast<float>(m[0][j] / scale), static_cast<float>(m[1][j] / scale), static_cast<float>(m[2][j] / scale)};
+}
+
+// Texture coordinates on a side of the cube, as in Mitsuba: each side shows the whole unit square.
+Vec2f cube_uv(int axis, bool positive, Vec3f p) {
+  const Vec2f st = axis == 0   ? (positive ? Vec2f{p.y, -p.z} : Vec2f{p.y, p.z})
+                   : axis == 1 ? (positive ? Vec2f{-p.x, -p.z} : Vec2f{p.z, p.x})
+                               : (positive ? Vec2f{p.y, p.x} : Vec2f{-p.y, p.x});
+  return {(st.x + 1) / 2, (st.y + 1) / 2};
+}
+
 // [-1,1]^3 with four vertices a side, so that normals and texture coordinates are those of the sides.
 RawMesh cube_mesh() {
   RawMesh mesh;
@@ -26,7 +40,7 @@ RawMesh cube_mesh() {
         const float s = 2 * corner.x - 1, t = side * (2 * corner.y - 1);
         mesh.positions.push_back(axis == 0 ? Vec3f{side, s, t} : axis == 1 ? Vec3f{t, side, s} : Vec3f{s, t, side});
         mesh.normals.push_back(axis == 0 ? Vec3f{side, 0, 0} : axis == 1 ? Vec3f{0, side, 0} : Vec3f{0, 0, side});
-        mesh.uvs.push_back(corner);
+        mesh.uvs.push_back(cube_uv(axis, side > 0, mesh.positions.back()));
       }
       mesh.indices.insert(mesh.indices.end(), {first, first + 1, first + 2, first, first + 2, first + 3});
     }
@@ -66,6 +80,9 @@ SphereDescription read_sphere(Properties& properties, bool& flip_normals) {
   SphereDescription sphere;
   sphere.center = to_world.point({static_cast<float>(c[0]), static_cast<float>(c[1]), static_cast<float>(c[2])});
   sphere.radius = properties.number("radius", 1, kPositive) * static_cast<float>(axis_scale(to_world, 0));
+  sphere.axes.s = unit_axis(to_world, 0);
+  sphere.axes.t = unit_axis(to_world, 1);
+  sphere.axes.n = unit_axis(to_world, 2);
   if (!is_finite(sphere.center)) properties.fail("center", "expected finite numbers");
   if (!(sphere.radius > 0) || !std::isfinite(sphere.radius))
     properties.fail("radius", "with to_world the radius becomes 0 or infinite");

@@ -23,12 +23,16 @@ PluginNode read_tree(const Bundle& bundle, const SceneOverrides& overrides) {
   return read_mitsuba_json(bundle);
 }
 
-// Materials that no shape uses must be right, too, but they are no part of the description.
-void check_unused_materials(const PluginNode& scene, const PluginsById& plugins, const MaterialReader& used) {
-  std::vector<MaterialDescription> scratch;
-  MaterialReader reader(plugins, scratch);
+// Materials and textures that no shape uses must be right, too, but they are no part of the description, and images stay closed.
+void check_unused(const PluginNode& scene, const PluginsById& plugins, const Bundle& bundle, const MaterialReader& used_materials,
+                  const TextureReader& used_textures) {
+  std::vector<MaterialDescription> materials;
+  std::vector<TextureDescription> textures;
+  TextureReader texture_reader(plugins, bundle, TextureReader::Images::kCheckOnly, textures);
+  MaterialReader material_reader(plugins, texture_reader, materials);
   for (const PluginNode& child : scene.children) {
-    if (child.kind == PluginKind::kBsdf && !used.has_read(child)) reader.read(child);
+    if (child.kind == PluginKind::kBsdf && !used_materials.has_read(child)) material_reader.read(child);
+    if (child.kind == PluginKind::kTexture && !used_textures.has_read(child)) texture_reader.read(child);
   }
 }
 
@@ -54,7 +58,8 @@ SceneDescription build(const PluginNode& root, const Bundle& bundle) {
   SceneDescription scene;
   Properties(root).finish();
   const PluginsById plugins = plugins_by_id(root);
-  MaterialReader materials(plugins, scene.materials);
+  TextureReader textures(plugins, bundle, TextureReader::Images::kRead, scene.textures);
+  MaterialReader materials(plugins, textures, scene.materials);
   const PluginNode* sensor = nullptr;
   const PluginNode* integrator = nullptr;
   const PluginNode* envmap = nullptr;
@@ -67,7 +72,8 @@ SceneDescription build(const PluginNode& root, const Bundle& bundle) {
         if (child.type == "envmap") envmap = &child;
         scene.emitters.push_back(read_scene_emitter(child, bundle));
         break;
-      case PluginKind::kBsdf: break;  // read when a shape refers to it
+      case PluginKind::kBsdf:
+      case PluginKind::kTexture: break;  // read when a shape or a material refers to it
       case PluginKind::kSensor:
         if (sensor)
           scene.warnings.push_back(child.place + ": the scene has more than one sensor; the one at " + sensor->place + " is used");
@@ -77,10 +83,10 @@ SceneDescription build(const PluginNode& root, const Bundle& bundle) {
         if (integrator) throw SceneError(child.place, "the scene has a second integrator; the first is at " + integrator->place);
         integrator = &child;
         break;
-      default: fail_nested(root, child, "integrator, sensor, bsdf, shape and emitter");
+      default: fail_nested(root, child, "integrator, sensor, bsdf, texture, shape and emitter");
     }
   }
-  check_unused_materials(root, plugins, materials);
+  check_unused(root, plugins, bundle, materials, textures);
   if (!sensor) throw SceneError(root.place, "the scene has no sensor, expected one, as in <sensor type=\"perspective\">");
   read_sensor(*sensor, scene);
   if (integrator) scene.method = read_integrator(*integrator);

@@ -1,4 +1,6 @@
 // Plain description of a material: what the scene file says, before any table is computed. No behaviour.
+//
+// A colour may vary over the surface: `..._texture` is an index into the scene's textures, whose value multiplies the constant.
 #pragma once
 
 #include <variant>
@@ -7,14 +9,19 @@
 
 namespace fluxfarm {
 
+inline constexpr int kNoTexture = -1;
+
 struct DiffuseDescription {
   Rgb reflectance{0.5f};
+  int reflectance_texture = kNoTexture;
 };
 
 struct DielectricDescription {
   float eta = 1.5046f / 1.000277f;  // interior over exterior index of refraction
   Rgb specular_reflectance{1.0f};
   Rgb specular_transmittance{1.0f};
+  int specular_reflectance_texture = kNoTexture;
+  int specular_transmittance_texture = kNoTexture;
 };
 
 // Complex index of refraction eta - i k, relative to the exterior. `perfect` ignores it and reflects everything.
@@ -23,15 +30,17 @@ struct ConductorDescription {
   Rgb eta{0.0f};
   Rgb k{1.0f};
   Rgb specular_reflectance{1.0f};
+  int specular_reflectance_texture = kNoTexture;
 };
 
 enum class MicrofacetDistribution { kBeckmann, kGgx };
 
-// Roughness along the two tangents; > 0.
+// Roughness along the two tangents; > 0. The luminance of a texture multiplies both: of roughconductor only.
 struct Roughness {
   MicrofacetDistribution distribution = MicrofacetDistribution::kBeckmann;
   float alpha_u = 0.1f;
   float alpha_v = 0.1f;
+  int alpha_texture = kNoTexture;
 };
 
 struct RoughConductorDescription {
@@ -50,6 +59,8 @@ struct PlasticDescription {
   Rgb diffuse_reflectance{0.5f};
   Rgb specular_reflectance{1.0f};
   bool nonlinear = false;
+  int diffuse_reflectance_texture = kNoTexture;
+  int specular_reflectance_texture = kNoTexture;
 };
 
 struct RoughPlasticDescription {

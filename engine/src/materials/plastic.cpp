@@ -7,6 +7,7 @@
 #include "materials/directions.h"
 #include "materials/fresnel.h"
 #include "materials/plastic_base.h"
+#include "materials/textured_factories.h"
 #include "sampling/warp.h"
 
 namespace fluxfarm {
@@ -56,8 +57,33 @@ class Plastic final : public Bsdf {
   float mean_transmittance_;  // of the coat for diffuse light from outside
 };
 
+// Made anew at each hit: the coat has no tables, and the choice of the lobe follows the colours of the place.
+class TexturedPlastic final : public TexturedMaterial {
+ public:
+  TexturedPlastic(const PlasticDescription& d, const Textures& textures)
+      : d_(d),
+        diffuse_(texture_of(textures, d.diffuse_reflectance_texture)),
+        specular_(texture_of(textures, d.specular_reflectance_texture)) {}
+
+  const Bsdf& at(Vec2f uv, BsdfSpace& space) const override {
+    PlasticDescription d = d_;
+    d.diffuse_reflectance = colour_at(d.diffuse_reflectance, diffuse_, uv);
+    d.specular_reflectance = colour_at(d.specular_reflectance, specular_, uv);
+    return space.make<Plastic>(d);
+  }
+
+ private:
+  PlasticDescription d_;
+  const Texture* diffuse_;
+  const Texture* specular_;
+};
+
 }  // namespace
 
 std::unique_ptr<Bsdf> make_plastic(const PlasticDescription& d) { return std::make_unique<Plastic>(d); }
+
+std::unique_ptr<TexturedMaterial> make_textured_plastic(const PlasticDescription& d, const Textures& textures) {
+  return std::make_unique<TexturedPlastic>(d, textures);
+}
 
 }  // namespace fluxfarm

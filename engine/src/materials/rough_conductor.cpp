@@ -10,15 +10,17 @@
 #include "materials/conductor_reflectance.h"
 #include "materials/directions.h"
 #include "materials/ggx.h"
+#include "materials/textured_factories.h"
 
 namespace fluxfarm {
 namespace {
 
+// All but the albedo.
 template <class Distribution>
-class RoughConductor final : public Bsdf {
+class RoughMirror : public Bsdf {
  public:
-  explicit RoughConductor(const RoughConductorDescription& d)
-      : distribution_(d.roughness.alpha_u, d.roughness.alpha_v), reflectance_(d.conductor), albedo_(*this) {}
+  explicit RoughMirror(const RoughConductorDescription& d)
+      : distribution_(d.roughness.alpha_u, d.roughness.alpha_v), reflectance_(d.conductor) {}
 
   BsdfValue value(const Vec3f& wo, const Vec3f& wi) const override {
     if (wo.z <= 0 || wi.z <= 0) return {};
@@ -44,13 +46,65 @@ class RoughConductor final : public Bsdf {
     return BsdfSample{.wi = wi, .weight = reflectance_(cos_m) * masking, .pdf = pdf};
   }
 
-  Rgb albedo(const Vec3f& wo) const override { return wo.z > 0 ? albedo_(wo.z) : Rgb{}; }
   bool has_continuous_lobe() const override { return true; }
 
  private:
   Distribution distribution_;
   ConductorReflectance reflectance_;
-  AlbedoTable albedo_;  // last: built by sampling the members above
+};
+
+template <class Distribution>
+class RoughConductor final : public RoughMirror<Distribution> {
+ public:
+  explicit RoughConductor(const RoughConductorDescription& d) : RoughMirror<Distribution>(d), albedo_(*this) {}
+
+  Rgb albedo(const Vec3f& wo) const override { return wo.z > 0 ? albedo_(wo.z) : Rgb{}; }
+
+ private:
+  AlbedoTable albedo_;  // built by sampling the base class
+};
+
+// At a hit. The albedo is that of the mean roughness.
+template <class Distribution>
+class RoughConductorAtHit final : public RoughMirror<Distribution> {
+ public:
+  RoughConductorAtHit(const RoughConductorDescription& d, const Bsdf& white, Rgb colour)
+      : RoughMirror<Distribution>(d), white_(white), colour_(colour) {}
+
+  Rgb albedo(const Vec3f& wo) const override { return colour_ * white_.albedo(wo); }
+
+ private:
+  const Bsdf& white_;
+  Rgb colour_;
+};
+
+template <class Distribution>
+class TexturedRoughConductor final : public TexturedMaterial {
+ public:
+  TexturedRoughConductor(const RoughConductorDescription& d, const Textures& textures)
+      : d_(d),
+        colour_(texture_of(textures, d.conductor.specular_reflectance_texture)),
+        alpha_(texture_of(textures, d.roughness.alpha_texture)),
+        white_(at_alpha(luminance(alpha_->mean_value()), Rgb{1.0f})) {}
+
+  const Bsdf& at(Vec2f uv, BsdfSpace& space) const override {
+    const Rgb colour = colour_at(d_.conductor.specular_reflectance, colour_, uv);
+    return space.make<RoughConductorAtHit<Distribution>>(at_alpha(luminance(alpha_->value(uv)), colour), white_, colour);
+  }
+
+ private:
+  RoughConductorDescription at_alpha(float factor, Rgb colour) const {
+    RoughConductorDescription d = d_;
+    d.roughness.alpha_u *= factor;
+    d.roughness.alpha_v *= factor;
+    d.conductor.specular_reflectance = colour;
+    return d;
+  }
+
+  RoughConductorDescription d_;
+  const Texture* colour_;
+  const Texture* alpha_;
+  RoughConductor<Distribution> white_;  // of the mean roughness
 };
 
 }  // namespace
@@ -58,6 +112,13 @@ class RoughConductor final : public Bsdf {
 std::unique_ptr<Bsdf> make_rough_conductor(const RoughConductorDescription& d) {
   if (d.roughness.distribution == MicrofacetDistribution::kGgx) return std::make_unique<RoughConductor<Ggx>>(d);
   return std::make_unique<RoughConductor<Beckmann>>(d);
+}
+
+std::unique_ptr<TexturedMaterial> make_textured_rough_conductor(const RoughConductorDescription& d, const Textures& textures) {
+  if (d.roughness.distribution == MicrofacetDistribution::kGgx) {
+    return std::make_unique<TexturedRoughConductor<Ggx>>(d, textures);
+  }
+  return std::make_unique<TexturedRoughConductor<Beckmann>>(d, textures);
 }
 
 }  // namespace fluxfarm

@@ -10,21 +10,22 @@
 #include "materials/fresnel.h"
 #include "materials/ggx.h"
 #include "materials/plastic_base.h"
+#include "materials/textured_factories.h"
 
 namespace fluxfarm {
 namespace {
 
-template <class Distribution>
-class RoughPlastic final : public Bsdf {
+// All but the albedo. `Coat` is CoatTable, or a reference to one that is shared.
+template <class Distribution, class Coat>
+class CoatedBase : public Bsdf {
  public:
-  explicit RoughPlastic(const RoughPlasticDescription& d)
-      : distribution_(d.roughness.alpha_u, d.roughness.alpha_u),
-        coat_(distribution_, d.plastic.eta),
+  CoatedBase(const RoughPlasticDescription& d, const Distribution& distribution, const CoatTable& coat)
+      : distribution_(distribution),
+        coat_(coat),
         eta_(d.plastic.eta),
         specular_(d.plastic.specular_reflectance),
         base_f_(plastic_base(d.plastic, coat_.internal_reflectance())),
-        lobes_(d.plastic),
-        albedo_(*this) {}
+        lobes_(d.plastic) {}
 
   BsdfValue value(const Vec3f& wo, const Vec3f& wi) const override {
     if (wo.z <= 0 || wi.z <= 0) return {};
@@ -49,8 +50,13 @@ class RoughPlastic final : public Bsdf {
     return BsdfSample{.wi = wi, .weight = v.f * (wi.z / v.pdf), .pdf = v.pdf};
   }
 
-  Rgb albedo(const Vec3f& wo) const override { return wo.z > 0 ? albedo_(wo.z) : Rgb{}; }
   bool has_continuous_lobe() const override { return true; }
+
+ protected:
+  const CoatTable& coat() const { return coat_; }
+  Rgb specular() const { return specular_; }
+  // Albedo of the base through the coat, for wo.z > 0.
+  Rgb base_albedo(const Vec3f& wo) const { return base_f_ * (kPi * coat_.transmittance(wo.z) * coat_.mean_transmittance()); }
 
  private:
   BsdfValue value(const Vec3f& wo, const Vec3f& wi, float t_o, float specular) const {
@@ -67,12 +73,75 @@ class RoughPlastic final : public Bsdf {
   }
 
   Distribution distribution_;
-  CoatTable coat_;
+  Coat coat_;
   float eta_;
   Rgb specular_;
   Rgb base_f_;  // value of the base inside both crossings of the coat, sr^-1
   PlasticLobes lobes_;
-  AlbedoTable albedo_;  // last: built by sampling the members above
+};
+
+template <class Distribution>
+Distribution isotropic(const RoughPlasticDescription& d) {
+  return {d.roughness.alpha_u, d.roughness.alpha_u};
+}
+
+template <class Distribution>
+class RoughPlastic final : public CoatedBase<Distribution, CoatTable> {
+ public:
+  explicit RoughPlastic(const RoughPlasticDescription& d)
+      : CoatedBase<Distribution, CoatTable>(d, isotropic<Distribution>(d), CoatTable(isotropic<Distribution>(d), d.plastic.eta)),
+        albedo_(*this) {}
+
+  Rgb albedo(const Vec3f& wo) const override { return wo.z > 0 ? albedo_(wo.z) : Rgb{}; }
+  using CoatedBase<Distribution, CoatTable>::coat;
+
+ private:
+  AlbedoTable albedo_;  // built by sampling the base class
+};
+
+// At a hit, with the tables of a coat over black.
+template <class Distribution>
+class RoughPlasticAtHit final : public CoatedBase<Distribution, const CoatTable&> {
+ public:
+  RoughPlasticAtHit(const RoughPlasticDescription& d, const RoughPlastic<Distribution>& coat)
+      : CoatedBase<Distribution, const CoatTable&>(d, isotropic<Distribution>(d), coat.coat()), over_black_(coat) {}
+
+  Rgb albedo(const Vec3f& wo) const override {
+    if (wo.z <= 0) return {};
+    return this->specular() * over_black_.albedo(wo) + this->base_albedo(wo);
+  }
+
+ private:
+  const Bsdf& over_black_;
+};
+
+template <class Distribution>
+class TexturedRoughPlastic final : public TexturedMaterial {
+ public:
+  TexturedRoughPlastic(const RoughPlasticDescription& d, const Textures& textures)
+      : d_(d),
+        diffuse_(texture_of(textures, d.plastic.diffuse_reflectance_texture)),
+        specular_(texture_of(textures, d.plastic.specular_reflectance_texture)),
+        coat_(coloured(Rgb{0.0f}, Rgb{1.0f})) {}
+
+  const Bsdf& at(Vec2f uv, BsdfSpace& space) const override {
+    const Rgb diffuse = colour_at(d_.plastic.diffuse_reflectance, diffuse_, uv);
+    const Rgb specular = colour_at(d_.plastic.specular_reflectance, specular_, uv);
+    return space.make<RoughPlasticAtHit<Distribution>>(coloured(diffuse, specular), coat_);
+  }
+
+ private:
+  RoughPlasticDescription coloured(Rgb diffuse, Rgb specular) const {
+    RoughPlasticDescription d = d_;
+    d.plastic.diffuse_reflectance = diffuse;
+    d.plastic.specular_reflectance = specular;
+    return d;
+  }
+
+  RoughPlasticDescription d_;
+  const Texture* diffuse_;
+  const Texture* specular_;
+  RoughPlastic<Distribution> coat_;
 };
 
 }  // namespace
@@ -80,6 +149,13 @@ class RoughPlastic final : public Bsdf {
 std::unique_ptr<Bsdf> make_rough_plastic(const RoughPlasticDescription& d) {
   if (d.roughness.distribution == MicrofacetDistribution::kGgx) return std::make_unique<RoughPlastic<Ggx>>(d);
   return std::make_unique<RoughPlastic<Beckmann>>(d);
+}
+
+std::unique_ptr<TexturedMaterial> make_textured_rough_plastic(const RoughPlasticDescription& d, const Textures& textures) {
+  if (d.roughness.distribution == MicrofacetDistribution::kGgx) {
+    return std::make_unique<TexturedRoughPlastic<Ggx>>(d, textures);
+  }
+  return std::make_unique<TexturedRoughPlastic<Beckmann>>(d, textures);
 }
 
 }  // namespace fluxfarm

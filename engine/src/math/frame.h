@@ -9,9 +9,9 @@ namespace fluxfarm {
 
 // [Duff17] T. Duff et al., "Building an Orthonormal Basis, Revisited", JCGT 6(1), 2017.
 struct Frame {
-  Vec3f s, t, n;
+  Vec3f s{1, 0, 0}, t{0, 1, 0}, n{0, 0, 1};
 
-  Frame() = default;
+  Frame() = default;  // the axes of the world
   // `normal` must have unit length.                                                        [Duff17, listing 3]
   explicit Frame(Vec3f normal) : n(normal) {
     const float sign = std::copysign(1.0f, n.z);

@@ -12,10 +12,12 @@
 
 #include "emitters/lat_long_image.h"
 #include "materials/material_description.h"
+#include "math/frame.h"
 #include "math/rgb.h"
 #include "math/transform.h"
 #include "math/vec.h"
 #include "sampling/pixel_filter.h"
+#include "textures/texture_description.h"
 
 namespace fluxfarm {
 
@@ -43,6 +45,7 @@ struct DiskDescription {
 struct SphereDescription {
   Vec3f center;
   float radius = 1;
+  Frame axes{};  // the sphere's own axes in the world, unit; left-handed when mirrored
 };
 
 struct ShapeDescription {
@@ -121,6 +124,7 @@ struct MethodDescription {
 
 struct SceneDescription {
   std::vector<MaterialDescription> materials;
+  std::vector<TextureDescription> textures;
   std::vector<ShapeDescription> shapes;
   std::vector<EmitterDescription> emitters;
   CameraDescription camera;

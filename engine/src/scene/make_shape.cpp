@@ -22,11 +22,12 @@ std::unique_ptr<Disk> make(const DiskDescription& disk, bool flipped, bool) {
   const Transform& m = disk.to_world;
   const Vec3f tangent = m.vector({1, 0, 0});
   const Vec3f normal = normalize(m.normal({0, 0, 1})) * (flipped ? -1.0f : 1.0f);
-  return std::make_unique<Disk>(m.point({}), normal, normalize(tangent), length(tangent));
+  const bool clockwise = dot(cross(tangent, m.vector({0, 1, 0})), normal) < 0;
+  return std::make_unique<Disk>(m.point({}), normal, normalize(tangent), length(tangent), clockwise);
 }
 
 std::unique_ptr<Sphere> make(const SphereDescription& sphere, bool flipped, bool) {
-  return std::make_unique<Sphere>(sphere.center, sphere.radius, flipped);
+  return std::make_unique<Sphere>(sphere.center, sphere.radius, flipped, sphere.axes);
 }
 
 }  // namespace

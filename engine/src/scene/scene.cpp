@@ -1,6 +1,7 @@
 #include "scene/scene.h"
 
 #include "materials/make_bsdf.h"
+#include "materials/make_textured.h"
 #include "scene/make_emitter.h"
 #include "scene/make_shape.h"
 
@@ -35,9 +36,12 @@ Scene::Scene(const SceneDescription& description, int threads)
       pixel_filter_(description.film.filter),
       camera_(description.camera, description.film.width, description.film.height),
       bsdfs_(make_bsdfs(description.materials)),
+      textures_(make_textures(description.textures)),
+      textured_materials_(make_textured_materials(description.materials, bsdfs_, textures_)),
       accelerator_(std::make_unique<RayAccelerator>(threads)),
       warnings_(description.warnings) {
   census_.materials = bsdfs_.size();
+  census_.textures = textures_.size();
   surfaces_.reserve(description.shapes.size());
   for (const ShapeDescription& shape : description.shapes) {
     Surface surface;
@@ -50,11 +54,17 @@ Scene::Scene(const SceneDescription& description, int threads)
     surface.has_continuous_lobe = bsdf->has_continuous_lobe();
     surface.chooses_lobe = bsdf->chooses_lobe();
     surface.anisotropic = is_anisotropic(description.materials, description.materials[shape.material]);
+    const TexturedSides& sides_with_textures =
+        textured_sides_.emplace_back(textured_sides(description.materials, static_cast<std::size_t>(shape.material)));
+    surface.textured = sides_with_textures.front != nullptr || sides_with_textures.back != nullptr;
     census_.anisotropic_materials |= surface.anisotropic;
     census_.delta_materials |= !surface.has_continuous_lobe && !shape.emitted_radiance;
     if (const auto* mesh = dynamic_cast<const TriangleMesh*>(surface.shape.get())) {
       census_.triangles += mesh->triangles();
       census_.shading_normals |= !mesh->data().normals.empty();
+      if (surface.textured && mesh->data().uvs.empty()) {
+        warnings_.push_back(shape.name + ": the mesh has no texture coordinates; its texture fills every triangle by itself");
+      }
     }
     if (shape.emitted_radiance) {
       area_emitters_.push_back(std::make_unique<AreaEmitter>(*surface.shape, *shape.emitted_radiance));
@@ -91,6 +101,14 @@ Scene::Scene(const SceneDescription& description, int threads)
   census_.area_emitters = area_emitters_.size();
   census_.environment = environment_.has_value();
   census_.environment_map = environment_map_.emitter != nullptr;
+}
+
+Scene::TexturedSides Scene::textured_sides(const std::vector<MaterialDescription>& materials, std::size_t material) const {
+  const auto textured = [&](std::size_t index) { return textured_materials_[index].get(); };
+  if (const auto* twosided = std::get_if<TwosidedDescription>(&materials[material])) {
+    return {textured(static_cast<std::size_t>(twosided->front)), textured(static_cast<std::size_t>(twosided->back))};
+  }
+  return {textured(material), textured(material)};
 }
 
 }  // namespace fluxfarm

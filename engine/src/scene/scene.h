@@ -11,8 +11,10 @@
 #include "emitters/emitter_choice.h"
 #include "emitters/envmap_emitter.h"
 #include "materials/bsdf.h"
+#include "materials/textured_material.h"
 #include "scene/camera.h"
 #include "scene/description.h"
+#include "textures/make_texture.h"
 
 namespace fluxfarm {
 
@@ -22,7 +24,7 @@ struct Census {
   std::size_t area_emitters = 0, point_emitters = 0, spot_emitters = 0, directional_emitters = 0;
   bool environment = false;      // a constant one
   bool environment_map = false;  // an image
-  std::size_t materials = 0;
+  std::size_t materials = 0, textures = 0;
   bool delta_materials = false;        // some material has only delta lobes
   bool anisotropic_materials = false;  // tangent frames are needed
   bool shading_normals = false;        // some mesh has normals of its own
@@ -40,6 +42,7 @@ class Scene {
     float choice_probability = 0;          // of its emitter in next-event estimation
     bool two_sided = false;
     bool anisotropic = false;
+    bool textured = false;  // on one side at least: ask textured_material()
     // The material's answers to the questions of the same name.
     bool has_continuous_lobe = false, chooses_lobe = false;
   };
@@ -49,6 +52,11 @@ class Scene {
   Scene(const SceneDescription& description, int threads);
 
   const Surface& surface(std::uint32_t shape) const { return surfaces_[shape]; }
+  // What gives the Bsdf of one side of a textured surface at a hit; null where that side has no texture.
+  const TexturedMaterial* textured_material(std::uint32_t shape, bool back) const {
+    const TexturedSides& sides = textured_sides_[shape];
+    return back ? sides.back : sides.front;
+  }
   const RayAccelerator& accelerator() const { return *accelerator_; }
   const EmitterChoice& emitters() const { return emitter_choice_; }
   // Radiance of the constant environment; empty without one.
@@ -66,11 +74,20 @@ class Scene {
   const std::vector<std::string>& warnings() const { return warnings_; }
 
  private:
+  struct TexturedSides {
+    const TexturedMaterial* front = nullptr;
+    const TexturedMaterial* back = nullptr;
+  };
+  TexturedSides textured_sides(const std::vector<MaterialDescription>& materials, std::size_t material) const;
+
   FilmDescription film_;
   MethodDescription method_;
   PixelFilter pixel_filter_;
   Camera camera_;
   std::vector<std::unique_ptr<Bsdf>> bsdfs_;
+  Textures textures_;
+  std::vector<std::unique_ptr<TexturedMaterial>> textured_materials_;  // one for each material; null without texture
+  std::vector<TexturedSides> textured_sides_;                          // one for each surface
   std::vector<Surface> surfaces_;
   std::vector<std::unique_ptr<AreaEmitter>> area_emitters_;
   std::vector<std::unique_ptr<Emitter>> free_emitters_;  // those without a shape

@@ -23,6 +23,7 @@ std::string plan_json(const Scene& scene) {
        {{"shapes", census.shapes},
         {"triangles", census.triangles},
         {"materials", census.materials},
+        {"textures", census.textures},
         {"area_emitters", census.area_emitters},
         {"point_emitters", census.point_emitters},
         {"spot_emitters", census.spot_emitters},
@@ -38,6 +39,7 @@ std::string plan_json(const Scene& scene) {
         part("environment map", census.environment_map, census.environment_map ? "an envmap" : "no envmap"),
         part("tangent frames", census.anisotropic_materials,
              census.anisotropic_materials ? "a material with two roughnesses" : "no anisotropic material"),
+        part("textures", census.textures > 0, count(census.textures, "texture")),
         part("shading normals", census.shading_normals,
              census.shading_normals ? "a mesh with normals" : "all surfaces flat or exact")}}};
   return plan.dump();

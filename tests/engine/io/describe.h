@@ -13,6 +13,7 @@ class Describer {
  public:
   std::string describe(const SceneDescription& scene) {
     for (const auto& material : scene.materials) std::visit([this](const auto& m) { write(m); }, material);
+    for (const auto& texture : scene.textures) std::visit([this](const auto& t) { write(t); }, texture);
     for (const auto& shape : scene.shapes) {
       out_ << "shape " << shape.name << " material " << shape.material << " flip " << shape.flip_normals << "\n";
       if (shape.emitted_radiance) write("radiance", *shape.emitted_radiance);
@@ -40,7 +41,19 @@ class Describer {
     }
     out_ << "\n";
   }
-  void write(const DiffuseDescription& m) { write("diffuse", m.reflectance); }
+  void write(const CheckerboardDescription& t) {
+    write("color0", t.color0);
+    write("color1", t.color1);
+    write("to_uv", t.to_uv);
+  }
+  void write(const BitmapDescription& t) {
+    out_ << "bitmap " << static_cast<int>(t.filter) << " " << static_cast<int>(t.wrap) << "\n";
+    write("to_uv", t.to_uv);
+  }
+  void write(const DiffuseDescription& m) {
+    write("diffuse", m.reflectance);
+    out_ << "texture " << m.reflectance_texture << "\n";
+  }
   void write(const DielectricDescription& m) {
     out_ << "dielectric " << m.eta << "\n";
     write("reflects", m.specular_reflectance);

@@ -1,4 +1,5 @@
 // Scenes that others wrote, found through FLUXFARM_SCENES_DATA (default ../shared/scenes-data beside the repository).
+#include <algorithm>
 #include <cstdlib>
 
 #include "io/scene_folder.h"
@@ -54,10 +55,17 @@ TEST_F(OutsideScenes, WaterCausticWithOldSpellingsLoads) {
   EXPECT_EQ(triangles(scene), 12u + 12 + 102938 + 513);
 }
 
+TEST_F(OutsideScenes, VeachAjarLoadsItsTextures) {
+  const SceneDescription scene = read("veach-ajar");
+  ASSERT_EQ(scene.textures.size(), 4u);
+  EXPECT_EQ(std::count_if(scene.textures.begin(), scene.textures.end(),
+                          [](const TextureDescription& texture) { return std::holds_alternative<BitmapDescription>(texture); }),
+            3);
+}
+
 TEST_F(OutsideScenes, PluginsOfLaterAreNamed) {
   EXPECT_EQ(error_of([] { read("glass-of-milk"); }),
             "scene.xml:27: unknown plugin: medium \"homogeneous\"; no medium is supported yet");
-  EXPECT_EQ(error_of([] { read("veach-ajar"); }), "scene.xml:29: unknown plugin: texture \"bitmap\"; no texture is supported yet");
 }
 
 }  // namespace

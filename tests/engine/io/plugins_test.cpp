@@ -73,8 +73,8 @@ TEST(Materials, ReflectancesLieBetweenZeroAndOne) {
   EXPECT_EQ(material_error(folder, "<bsdf type=\"diffuse\"><spectrum name=\"reflectance\" value=\"400:0.5, 700:0.7\"/></bsdf>"),
             "scene.xml:2: <spectrum> value = \"400:0.5, 700:0.7\": spectra by wavelength are not supported, expected one "
             "number, or use <rgb>");
-  EXPECT_EQ(material_error(folder, "<bsdf type=\"diffuse\">\n<texture type=\"bitmap\" name=\"reflectance\"/></bsdf>"),
-            "scene.xml:3: unknown plugin: texture \"bitmap\"; no texture is supported yet");
+  EXPECT_EQ(material_error(folder, "<bsdf type=\"diffuse\">\n<texture type=\"marble\" name=\"reflectance\"/></bsdf>"),
+            "scene.xml:3: unknown plugin: texture \"marble\", expected one of: bitmap, checkerboard");
 }
 
 TEST(Materials, TwosidedTakesOneOrTwoOpaqueMaterials) {

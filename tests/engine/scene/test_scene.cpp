@@ -124,6 +124,94 @@ TEST(Sides, GlassOfIndexOneIsNotThere) {
   EXPECT_NEAR(radiance_seen(DielectricDescription{.eta = 1}, 0, false), 1, 1e-5);
 }
 
+// Colours of the quarters of a textured square around the origin of the plane z = 1, seen at (x, y) from the origin: a white
+// environment shows the reflectance. `back` turns the square's back to the camera.
+class TexturedSquare {
+ public:
+  explicit TexturedSquare(bool back) : back_(back) {}
+
+  double seen_at(double x, double y) const {
+    SceneBuilder scene;
+    const int board = scene.texture(CheckerboardDescription{Rgb{0.8f}, Rgb{0.2f}, {}});
+    const int textured = scene.add(DiffuseDescription{Rgb{1.0f}, board}), plain = scene.diffuse(0.5f);
+    const int both = scene.add(back_ ? TwosidedDescription{plain, textured} : TwosidedDescription{textured, plain});
+    const Transform turn = back_ ? Transform() : Transform::rotate(0, 1, 0, 180);
+    scene.shape(RectangleDescription{Transform::translate(0, 0, 1) * turn}, both);
+    scene.emitter(ConstantEmitterDescription{Rgb{1.0f}});
+    scene.look({x, y, 0}, {x, y, 1});
+    return measure(scene.description(), 16).mean;
+  }
+
+ private:
+  bool back_;
+};
+
+TEST(Textures, ShowTheirColoursWhereTheyLie) {
+  const TexturedSquare front(false), back(true);
+  EXPECT_NEAR(back.seen_at(-0.5, -0.5), 0.8, 1e-5);
+  EXPECT_NEAR(back.seen_at(0.5, 0.5), 0.8, 1e-5);
+  EXPECT_NEAR(back.seen_at(0.5, -0.5), 0.2, 1e-5);
+  EXPECT_NEAR(back.seen_at(-0.5, 0.5), 0.2, 1e-5);
+  EXPECT_NEAR(front.seen_at(0.5, -0.5), 0.8, 1e-5) << "turned about y: u runs against x";
+  EXPECT_NEAR(front.seen_at(0.5, 0.5), 0.2, 1e-5);
+}
+
+TEST(Textures, StayOnTheirSideOfATwosidedMaterial) {
+  SceneBuilder scene;
+  const int board = scene.texture(CheckerboardDescription{Rgb{0.8f}, Rgb{0.2f}, {}});
+  const int textured = scene.add(DiffuseDescription{Rgb{1.0f}, board}), plain = scene.diffuse(0.5f);
+  scene.shape(RectangleDescription{Transform::translate(0, 0, 1)}, scene.add(TwosidedDescription{textured, plain}));
+  scene.emitter(ConstantEmitterDescription{Rgb{1.0f}});
+  scene.look({0.5, 0.5, 0}, {0.5, 0.5, 1});
+  EXPECT_NEAR(measure(scene.description(), 16).mean, 0.5, 1e-5) << "the camera sees the back";
+}
+
+// Every pixel of a frame of textured surfaces, rendered in tiles of that side.
+std::vector<float> textured_frame(int tile_size, int threads) {
+  SceneBuilder builder;
+  const int board =
+      builder.texture(CheckerboardDescription{Rgb{0.8f, 0.3f, 0.1f}, Rgb{0.1f, 0.2f, 0.7f}, Transform::scale(4, 3, 1)});
+  PlasticDescription paint;
+  paint.diffuse_reflectance = Rgb{1.0f};
+  paint.diffuse_reflectance_texture = board;
+  builder.floor(-1, 3, builder.add(DiffuseDescription{Rgb{1.0f}, board}));
+  builder.shape(SphereDescription{}, builder.add(RoughPlasticDescription{paint, {}}));
+  builder.emitter(ConstantEmitterDescription{Rgb{1.0f}}).emitter(PointEmitterDescription{{1, 4, 2}, Rgb{9.0f}});
+  builder.look({0, 1, 5}, {0, 0, 0});
+  SceneDescription description = builder.description();
+  description.camera.fov_degrees = 40;
+  description.film.width = 48;
+  description.film.height = 32;
+  const Scene scene(description, 1);
+  const auto integrator = make_integrator("path", scene);
+  const std::atomic<bool> never{false};
+  const FrameResult result = render_frame(scene, *integrator, {{0, 0, 48, 32}, tile_size, threads, 1, {8, {}, {}}}, never);
+  std::vector<float> values;
+  for (int y = 0; y < 32; ++y) {
+    for (int x = 0; x < 48; ++x) {
+      const Rgb mean = result.film.replicate_mean(x, y, 0);
+      values.insert(values.end(), {mean.r, mean.g, mean.b});
+    }
+  }
+  return values;
+}
+
+TEST(Textures, GiveTheSameBitsForAnyTileSizeAndNumberOfThreads) {
+  const std::vector<float> expected = textured_frame(64, 1);
+  EXPECT_EQ(textured_frame(7, 1), expected);
+  EXPECT_EQ(textured_frame(16, 3), expected);
+}
+
+TEST(Textures, OnMeshesWithoutCoordinatesAreWarnedAbout) {
+  SceneBuilder builder;
+  const int board = builder.texture(CheckerboardDescription{});
+  builder.shape(cube(Transform()), builder.add(DiffuseDescription{Rgb{1.0f}, board})).look({0, 0, -5}, {0, 0, 0});
+  const Scene scene(builder.description(), 1);
+  ASSERT_EQ(scene.warnings().size(), 1u);
+  EXPECT_EQ(scene.warnings()[0], "test shape: the mesh has no texture coordinates; its texture fills every triangle by itself");
+  EXPECT_EQ(scene.census().textures, 1u);
+}
+
 TEST(Census, CountsWhatIsThere) {
   SceneBuilder builder;
   builder.shape(cube(Transform()), builder.diffuse(0.5f));
@@ -143,6 +231,7 @@ TEST(Census, CountsWhatIsThere) {
   EXPECT_TRUE(scene.census().environment_map);
   EXPECT_FALSE(scene.census().environment);
   EXPECT_FALSE(scene.census().anisotropic_materials);
+  EXPECT_EQ(scene.census().textures, 0u);
 }
 
 }  // namespace

@@ -33,6 +33,11 @@ class SceneBuilder {
     return static_cast<int>(description_.materials.size()) - 1;
   }
 
+  int texture(TextureDescription texture) {
+    description_.textures.push_back(texture);
+    return static_cast<int>(description_.textures.size()) - 1;
+  }
+
   // A shape of that geometry; `radiance` above zero makes its front side emit.
   template <typename Geometry>
   SceneBuilder& shape(Geometry geometry, int material, float radiance = 0, bool flip_normals = false) {

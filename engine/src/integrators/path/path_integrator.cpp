@@ -62,7 +62,7 @@ class PathGroup {
       queries_.intersect({rays_.data(), paths_}, {hits_.data(), paths_}, depth == 0);
       // All vertices first: they do not depend on each other, so the waits for their memory overlap.
       for (std::size_t i = 0; i < paths_; ++i) {
-        if (hits_[i].shape != Hit::kNone) vertices_[i] = PathVertex(scene_, rays_[i], hits_[i]);
+        if (hits_[i].shape != Hit::kNone) vertices_[i] = PathVertex(scene_, rays_[i], hits_[i], bsdf_spaces_[i]);
       }
       std::size_t alive = 0;
       lights_ = 0;
@@ -218,6 +218,7 @@ class PathGroup {
   std::array<Ray, kMaxPaths> rays_;
   std::array<Hit, kMaxPaths> hits_;
   std::array<PathVertex, kMaxPaths> vertices_;
+  std::array<BsdfSpace, kMaxPaths> bsdf_spaces_;  // of vertices with textures
   std::size_t lights_ = 0;
   std::array<Ray, kMaxPaths> shadow_rays_;
   std::array<PendingLight, kMaxPaths> pending_;

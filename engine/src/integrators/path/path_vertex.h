@@ -16,7 +16,8 @@ struct PathVertex {
   const Bsdf* bsdf = nullptr;  // of that side
 
   PathVertex() = default;
-  PathVertex(const Scene& scene, const Ray& ray, const Hit& hit) : surface(&scene.surface(hit.shape)) {
+  // A textured surface has its BSDF made in `space`.
+  PathVertex(const Scene& scene, const Ray& ray, const Hit& hit, BsdfSpace& space) : surface(&scene.surface(hit.shape)) {
     point = surface->shape->surface_point(ray, hit);
     frame = Frame(point.shading_normal);
     if (surface->anisotropic) align(surface->shape->tangent(point, hit));
@@ -26,6 +27,8 @@ struct PathVertex {
     frame.n *= side;
     wo.z *= side;
     bsdf = back ? surface->back : surface->front;
+    if (surface->textured) [[unlikely]]
+      look_up(scene, hit, back, space);
   }
 
   // Where a ray towards `direction` (world) may start without meeting its own surface.
@@ -35,6 +38,11 @@ struct PathVertex {
   }
 
  private:
+  void look_up(const Scene& scene, const Hit& hit, bool back, BsdfSpace& space) {
+    const TexturedMaterial* material = scene.textured_material(hit.shape, back);
+    if (material != nullptr) bsdf = &material->at(surface->shape->uv(point, hit), space);
+  }
+
   void align(Vec3f tangent) {
     const Vec3f s = tangent - dot(tangent, frame.n) * frame.n;
     const float squared = length_squared(s);

@@ -1,0 +1,127 @@
+#include "io/read_image.h"
+
+#include <dlfcn.h>
+
+#include <algorithm>
+#include <array>
+#include <fstream>
+#include <memory>
+#include <optional>
+#include <string_view>
+
+#include "io/image_module.h"
+#include "io/jpeg_size.h"
+#include "io/limits.h"
+#include "io/text.h"
+#include "support/error.h"
+
+namespace fluxfarm {
+namespace {
+
+OpenImageFunction load_module() {
+  const std::filesystem::path module = std::filesystem::canonical("/proc/self/exe").parent_path() / kImageModule;
+  void* library = dlopen(module.c_str(), RTLD_NOW | RTLD_LOCAL);
+  if (library == nullptr) throw ResourceError(std::string("images cannot be read: ") + dlerror());
+  void* function = dlsym(library, kOpenImageFunction);
+  if (function == nullptr) throw ResourceError(module.string() + " is not the engine's own module for images");
+  return reinterpret_cast<OpenImageFunction>(function);
+}
+
+// Loaded once, for the first image, and kept.
+OpenImageFunction open_image_function() {
+  static const OpenImageFunction function = load_module();
+  return function;
+}
+
+// Name of the decoder, or nothing.
+std::optional<std::string> format_of(const std::filesystem::path& file) {
+  using namespace std::string_view_literals;
+  std::array<char, 8> bytes{};
+  std::ifstream(file, std::ios::binary).read(bytes.data(), bytes.size());
+  const std::string_view start(bytes.data(), bytes.size());
+  if (start.starts_with("\x76\x2f\x31\x01"sv)) return "openexr";
+  if (start.starts_with("\x89PNG\r\n\x1a\n"sv)) return "png";
+  if (start.starts_with("\xff\xd8\xff"sv)) return "jpeg";
+  if (start.starts_with("#?"sv)) return "hdr";
+  return std::nullopt;
+}
+
+void check_size(std::int64_t width, std::int64_t height, const std::string& name) {
+  if (width >= 1 && height >= 1 && width <= kMaxImageSide && height <= kMaxImageSide && width * height <= kMaxImagePixels) return;
+  throw SceneError(name, "the image has " + std::to_string(width) + " x " + std::to_string(height) +
+                             " pixels, expected sides of 1 to " + std::to_string(kMaxImageSide) + " and at most " +
+                             std::to_string(kMaxImagePixels) + " pixels");
+}
+
+struct Channels {
+  int first = 0, count = 1;
+};
+
+// R, G and B where they stand together; the only channel, or the one beside alpha, as grey.
+Channels channels_of(const ImageHeader& header, const std::string& name) {
+  const std::vector<std::string>& names = header.channels;
+  const auto red = std::find(names.begin(), names.end(), "R");
+  if (names.end() - red >= 3 && red[1] == "G" && red[2] == "B") return {static_cast<int>(red - names.begin()), 3};
+  if (names.size() == 1 || (names.size() == 2 && names[1] == "A")) return {0, 1};
+  throw SceneError(name, names.empty()
+                             ? std::string("the image has no channels, expected R, G and B, or one")
+                             : "the image has the channels " + in_quotes(joined(names)) + ", expected R, G and B, or one");
+}
+
+void check_header(const ImageHeader& header, const std::string& name) {
+  if (header.deep) throw SceneError(name, "is a deep image, expected one value a pixel");
+  if (header.depth > 1)
+    throw SceneError(name, "the image is " + std::to_string(header.depth) + " pixels deep, expected a flat one");
+  check_size(header.width, header.height, name);
+}
+
+void check_reflectances(const std::vector<float>& values, std::size_t width, std::size_t channels, const std::string& name) {
+  const auto wrong = std::find_if(values.begin(), values.end(), [](float v) { return !(v >= 0 && v <= 1); });
+  if (wrong == values.end()) return;
+  const std::size_t texel = static_cast<std::size_t>(wrong - values.begin()) / channels;
+  throw SceneError(name, "pixel (" + std::to_string(texel % width) + ", " + std::to_string(texel / width) + ") has the value " +
+                             number_text(static_cast<double>(*wrong)) + ", expected numbers in [0, 1]: a reflectance");
+}
+
+TextureImage read(ImageFile& file, const std::string& name, bool raw) {
+  const ImageHeader& header = file.header();
+  check_header(header, name);
+  const Channels channels = channels_of(header, name);
+  const int width = static_cast<int>(header.width), height = static_cast<int>(header.height);
+  const std::size_t values = static_cast<std::size_t>(header.width * header.height) * static_cast<std::size_t>(channels.count);
+  if (header.sample == ImageSample::kUint8) {
+    std::vector<std::uint8_t> texels(values);
+    file.read(channels.first, channels.count, texels.data());
+    return {width, height, channels.count, std::move(texels), !raw};
+  }
+  std::vector<float> texels(values);
+  file.read(channels.first, channels.count, texels.data());
+  check_reflectances(texels, static_cast<std::size_t>(width), static_cast<std::size_t>(channels.count), name);
+  if (header.sample == ImageSample::kUint16 && !raw) std::transform(texels.begin(), texels.end(), texels.begin(), srgb_to_linear);
+  return {width, height, channels.count, std::move(texels)};
+}
+
+}  // namespace
+
+TextureImage read_image(const std::filesystem::path& file, const std::string& name, bool raw) {
+  const std::optional<std::string> format = format_of(file);
+  if (!format) throw SceneError(name, "is no image that can be read, expected EXR, HDR, PNG or JPEG");
+  // Its decoder takes memory for the whole image before it tells the size.
+  if (*format == "jpeg") {
+    const auto [width, height] = jpeg_size(file);
+    check_size(width, height, name);
+  }
+  const OpenImageFunction open = open_image_function();
+  try {
+    const std::unique_ptr<ImageFile> image(open(file.c_str(), format->c_str()));
+    return read(*image, name, raw);
+  } catch (const Error&) {
+    throw;
+  } catch (const std::bad_alloc&) {
+    throw ResourceError(name + ": not enough memory for the image");
+  } catch (const std::exception& error) {
+    throw SceneError(name, "is a damaged " + *format + " image: " + printable(error.what()));
+  }
+}
+
+}  // namespace fluxfarm
