@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "film/tile_sums.h"
+#include "support/check.h"
 
 namespace fluxfarm {
 namespace {
@@ -17,8 +18,10 @@ constexpr double kRisk = 0.05;
 
 }  // namespace
 
-std::optional<double> ErrorBound::at(std::uint32_t samples) const {
-  if (samples < kFirstLook || !std::has_single_bit(samples) || pixels_ == 0) return std::nullopt;
+bool is_look(std::uint32_t samples) { return samples >= kFirstLook && std::has_single_bit(samples); }
+
+double ErrorBound::at(std::uint32_t samples) const {
+  FLUXFARM_CHECK(is_look(samples) && pixels_ > 0, "a bound is asked for at a look");
   const int look = std::bit_width(samples) - std::bit_width(kFirstLook) + 1;
   const double z = gaussian_upper_quantile(std::ldexp(kRisk, -look));
   const double estimate = sum_ / static_cast<double>(pixels_);

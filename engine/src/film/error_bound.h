@@ -10,9 +10,11 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 
 namespace fluxfarm {
+
+// Whether a decision is due at so many samples per pixel.
+bool is_look(std::uint32_t samples);
 
 class ErrorBound {
  public:
@@ -23,8 +25,8 @@ class ErrorBound {
     ++pixels_;
   }
 
-  // Upper bound of sqrt(relMSE); nothing unless a look is due at `samples` per pixel.
-  std::optional<double> at(std::uint32_t samples) const;
+  // Upper bound of sqrt(relMSE) after at least one pixel; is_look(samples).
+  double at(std::uint32_t samples) const;
 
  private:
   double sum_ = 0, squares_ = 0;

@@ -24,7 +24,6 @@ std::uint32_t replicate_samples(std::uint32_t samples, std::uint32_t replicate) 
 
 struct PixelMean {
   double mean[3];
-  double median[3];    // of the replicates' means
   double variance[3];  // of the mean
   double luminance_variance;
   bool has_variance;
@@ -56,16 +55,18 @@ PixelMean pixel_mean(const double radiance[kFilmReplicates][3], std::uint32_t sa
     }
     result.luminance_variance += luminance * luminance;
   }
-  for (int c = 0; c < 3; ++c) {
-    std::array<double, kFilmReplicates> means;
-    for (std::uint32_t r = 0; r < replicates; ++r) means[r] = radiance[r][c] / replicate_samples(samples, r);
-    std::nth_element(means.begin(), means.begin() + replicates / 2, means.begin() + replicates);
-    result.median[c] = means[replicates / 2];
-  }
   const double factor = replicates / (replicates - 1.0);
   for (double& variance : result.variance) variance *= factor;
   result.luminance_variance *= factor;
   return result;
+}
+
+// Median over the replicates of their means, of one channel.
+double pixel_median(const double radiance[kFilmReplicates][3], std::uint32_t samples, int channel) {
+  std::array<double, kFilmReplicates> means;
+  for (std::uint32_t r = 0; r < kFilmReplicates; ++r) means[r] = radiance[r][channel] / replicate_samples(samples, r);
+  std::nth_element(means.begin(), means.begin() + kFilmReplicates / 2, means.end());
+  return means[kFilmReplicates / 2];
 }
 
 template <typename T>
@@ -115,27 +116,36 @@ FilmSummary Film::summary() const {
   if (pixels_.empty()) return result;
   result.min_samples = std::numeric_limits<std::uint32_t>::max();
   double squares = 0;
-  ErrorBound bound;
   bool has_variance = true;
   for (const Pixel& p : pixels_) {
     const PixelMean m = pixel_mean(p.radiance, p.samples);
     result.min_samples = std::min(result.min_samples, p.samples);
     result.max_samples = std::max(result.max_samples, p.samples);
     has_variance = has_variance && m.has_variance;
-    double cautious = 0;
     for (int c = 0; c < 3; ++c) {
       result.mean[c] += m.mean[c];
       squares += relative(m.variance[c], m.mean[c]);
-      // A single very bright sample raises the mean, which would hide the error that it makes; the median does not follow it.
-      cautious += relative(m.variance[c], std::min(m.mean[c], m.median[c])) / 3;
     }
-    bound.add(cautious);
   }
   const double count = static_cast<double>(pixels_.size());
   for (double& mean : result.mean) mean /= count;
   if (has_variance) result.error_noise = std::sqrt(squares / (3 * count));
-  if (result.min_samples == result.max_samples) result.error_bound = bound.at(result.max_samples);
+  if (result.min_samples == result.max_samples && is_look(result.max_samples)) result.error_bound = error_bound();
   return result;
+}
+
+double Film::error_bound() const {
+  ErrorBound bound;
+  for (const Pixel& p : pixels_) {
+    const PixelMean m = pixel_mean(p.radiance, p.samples);
+    double share = 0;
+    for (int c = 0; c < 3; ++c) {
+      // A single very bright sample raises the mean, which would hide the error that it makes; the median does not follow it.
+      share += relative(m.variance[c], std::min(m.mean[c], pixel_median(p.radiance, p.samples, c))) / 3;
+    }
+    bound.add(share);
+  }
+  return bound.at(pixels_.front().samples);
 }
 
 Image Film::image(PixelRect rect, const ImageInfo& info) const {

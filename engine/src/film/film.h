@@ -74,6 +74,8 @@ class Film {
     std::uint32_t padding = 0;  // written to the film file: keep it zero
   };
   const Pixel& pixel(int x, int y) const;
+  // Of a film whose pixels all have the samples of a look.
+  double error_bound() const;
 
   int width_, height_;
   PixelRect crop_;

@@ -29,6 +29,7 @@ void write_png(const std::filesystem::path& path, const Image& image) {
   png.width = static_cast<png_uint_32>(image.data_window.width);
   png.height = static_cast<png_uint_32>(image.data_window.height);
   png.format = PNG_FORMAT_RGB;
+  png.flags = PNG_IMAGE_FLAG_FAST;  // a preview, written with every revision
   if (!png_image_write_to_file(&png, path.c_str(), 0, bytes.data(), 0, nullptr)) {
     throw ResourceError(path.string() + ": cannot be written as PNG: " + png.message);
   }

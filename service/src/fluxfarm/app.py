@@ -49,9 +49,10 @@ async def start_services(settings: Settings, stack: AsyncExitStack) -> Services:
     Raises StartError."""
     program = engine_program(settings)
     stack.enter_context(data_folder.hold(settings.data))
-    ledger = SqliteLedger(settings.data / "ledger.sqlite3", settings.journal)
+    durable = settings.sync == "full"
+    ledger = SqliteLedger(settings.data / "ledger.sqlite3", settings.journal, durable)
     stack.callback(ledger.close)
-    blobs = FileBlobStore(settings.data, settings.max_asset_bytes)
+    blobs = FileBlobStore(settings.data, settings.max_asset_bytes, durable)
     stack.callback(blobs.close)
     kept = {sha256 for record in await ledger.jobs() for sha256 in record.request.bundle.files.values()}
     swept = data_folder.sweep(settings.data, await ledger.files(), kept, settings.keep_assets_hours * 3600)

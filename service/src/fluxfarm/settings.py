@@ -31,6 +31,7 @@ class Settings:
     max_pixels: int = 1 << 27
     keep_assets_hours: float = 24.0
     journal: str = "wal"
+    sync: str = "full"
     log_level: str = "info"
 
     @property
@@ -53,6 +54,7 @@ BOUNDS: dict[str, tuple[float, float]] = {
 }
 CHOICES: dict[str, tuple[str, ...]] = {
     "journal": ("wal", "delete"),
+    "sync": ("full", "off"),
     "log_level": ("debug", "info", "warning", "error"),
 }
 

@@ -33,11 +33,14 @@ BUILTIN_ENTRY = "scene.xml"
 
 
 class FileBlobStore:
-    """The blob store in the folder `root`; uploads are at most `max_asset_bytes` long."""
+    """The blob store in the folder `root`; uploads are at most `max_asset_bytes` long.
 
-    def __init__(self, root: Path, max_asset_bytes: int) -> None:
+    If not `durable`, nothing is synced: a crash of the machine may damage it, one of the service may not."""
+
+    def __init__(self, root: Path, max_asset_bytes: int, durable: bool = True) -> None:
         self._root = root
         self._max_asset_bytes = max_asset_bytes
+        self._durable = durable
         self._work = ThreadPoolExecutor(4, thread_name_prefix="blobs")
         self._sync = ThreadPoolExecutor(SYNC_THREADS, thread_name_prefix="sync")
         for name in ("incoming", "assets", "scenes", "jobs"):
@@ -116,7 +119,7 @@ class FileBlobStore:
                 for temporary, final in paths:
                     if final.parent == folder:
                         temporary.replace(final)
-                sync_folder(folder)
+                self._sync_path(folder)
             return [final.name for _, final in paths]
 
         return await self._in_thread(put)
@@ -135,12 +138,12 @@ class FileBlobStore:
         """Sync a scratch file and move it to its digest; returns the digest and the size in bytes."""
 
         def move() -> tuple[str, int]:
-            sync_file(scratch)
+            self._sync_path(scratch)
             sha256, size = file_digest(scratch), scratch.stat().st_size
             folder = self._job_folder(job_id, "outputs")
-            make_synced_folder(folder)
+            self._make_folder(folder)
             scratch.replace(folder / sha256)
-            sync_folder(folder)
+            self._sync_path(folder)
             return sha256, size
 
         return await self._in_thread(move)
@@ -172,9 +175,9 @@ class FileBlobStore:
         if final.is_file():
             return False
         temporary.chmod(0o444)
-        sync_file(temporary)
+        self._sync_path(temporary)
         temporary.replace(final)
-        sync_folder(final.parent)
+        self._sync_path(final.parent)
         return True
 
     def _lay_out(self, bundle: SceneBundle) -> Path:
@@ -199,12 +202,30 @@ class FileBlobStore:
     def _write_tile(self, tile: tuple[str, bytes]) -> tuple[Path, Path]:
         job_id, sums = tile
         final = self.tile(job_id, hashlib.sha256(sums).hexdigest())
-        make_synced_folder(final.parent)
+        self._make_folder(final.parent)
         temporary = final.with_name(f"{uuid.uuid4().hex}.tmp")
         with temporary.open("wb", buffering=0) as file:
             file.write(sums)
-            os.fsync(file.fileno())
+            if self._durable:
+                os.fsync(file.fileno())
         return temporary, final
+
+    def _make_folder(self, folder: Path) -> None:
+        """Make a folder (and its parent) such that it survives a crash of the machine."""
+        if not folder.is_dir():
+            folder.mkdir(parents=True, exist_ok=True)
+            self._sync_path(folder.parent)
+            self._sync_path(folder.parent.parent)
+
+    def _sync_path(self, path: Path) -> None:
+        """Return when the file or folder is on disk."""
+        if not self._durable:
+            return
+        descriptor = os.open(path, os.O_RDONLY)
+        try:
+            os.fsync(descriptor)
+        finally:
+            os.close(descriptor)
 
     async def _in_thread(self, work: Callable[[], T]) -> T:
         return await asyncio.get_running_loop().run_in_executor(self._work, work)
@@ -214,23 +235,3 @@ def file_digest(path: Path) -> str:
     """SHA-256 of a file's bytes, in hexadecimal."""
     with path.open("rb") as file:
         return hashlib.file_digest(file, "sha256").hexdigest()
-
-
-def make_synced_folder(folder: Path) -> None:
-    """Make a folder (and its parent) such that it survives a crash of the machine."""
-    if not folder.is_dir():
-        folder.mkdir(parents=True, exist_ok=True)
-        sync_folder(folder.parent)
-        sync_folder(folder.parent.parent)
-
-
-def sync_file(path: Path) -> None:
-    """Return when the file's bytes are on disk."""
-    descriptor = os.open(path, os.O_RDONLY)
-    try:
-        os.fsync(descriptor)
-    finally:
-        os.close(descriptor)
-
-
-sync_folder = sync_file

@@ -236,7 +236,7 @@ def _service(server: str | None, threads: int | None, workers: int | None) -> It
     logs.set_up(os.environ.get(PREFIX + "LOG_LEVEL") or "critical")
     with tempfile.TemporaryDirectory(prefix="fluxfarm-", ignore_cleanup_errors=True) as folder:
         settings = _changed(from_environment(), threads=threads, workers=workers)
-        with EmbeddedService(replace(settings, data=Path(folder), port=0)) as service:
+        with EmbeddedService(replace(settings, data=Path(folder), port=0, sync="off")) as service:
             yield service.url
 
 

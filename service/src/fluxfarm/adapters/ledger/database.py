@@ -30,12 +30,13 @@ MOST_WORK_IN_ONE_TRANSACTION = 500
 
 
 class Database:
-    """The file at `path`, opened, checked and brought to the newest schema."""
+    """The file at `path`, opened, checked and brought to the newest schema; synced at each commit if `durable`."""
 
-    def __init__(self, path: Path, journal: str = "wal") -> None:
+    def __init__(self, path: Path, journal: str, durable: bool) -> None:
         """Raises StoreDamaged or SchemaTooNew."""
         self._path = path
         self._journal = journal
+        self._synchronous = "FULL" if durable else "OFF"
         self._work: queue.SimpleQueue[tuple[Callable[[Connection], Any], Future[Any]] | None] = queue.SimpleQueue()
         self._writing = self._open_writer()
         migrate(self._writing)
@@ -76,7 +77,7 @@ class Database:
             try:
                 connection = sqlite3.connect(self._path, isolation_level=None, check_same_thread=False)
                 connection.execute(f"PRAGMA journal_mode = {self._journal}")
-                for pragma in ("synchronous = FULL", "foreign_keys = ON", "busy_timeout = 5000"):
+                for pragma in (f"synchronous = {self._synchronous}", "foreign_keys = ON", "busy_timeout = 5000"):
                     connection.execute(f"PRAGMA {pragma}")
                 found = connection.execute("PRAGMA quick_check(1)").fetchone()[0]
             except sqlite3.DatabaseError as error:

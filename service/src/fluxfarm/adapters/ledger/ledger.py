@@ -22,9 +22,9 @@ T = TypeVar("T")
 class SqliteLedger:
     """The ledger in the file `path`. Calls may come from one event loop."""
 
-    def __init__(self, path: Path, journal: str = "wal") -> None:
+    def __init__(self, path: Path, journal: str = "wal", durable: bool = True) -> None:
         """Open, check and migrate; raises StoreDamaged or SchemaTooNew. Revokes every lease of an earlier service."""
-        self._database = Database(path, journal)
+        self._database = Database(path, journal, durable)
         self._database.post(changes.revoke_all).result()
 
     def close(self) -> None:
