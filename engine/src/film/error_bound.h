@@ -37,7 +37,7 @@ class ErrorBound {
 double gaussian_upper_quantile(double p);
 
 // What the F distribution with n and m degrees of freedom exceeds with the probability with which a Gaussian exceeds z; infinite
-// where the approximation ends (few degrees of freedom, large z).                                           [Paulson 1942]
+// where the approximation ends (few degrees of freedom, large z).                                           [Paulson42]
 double f_upper_quantile(double n, double m, double z);
 
 }  // namespace fluxfarm
