@@ -244,9 +244,11 @@ def _service(server: str | None, threads: int | None, workers: int | None) -> It
 def _loading() -> Iterator[None]:
     """For slow imports: what they make stays, and looking for garbage in it costs a fifth of start and end."""
     gc.disable()
-    yield
-    gc.freeze()
-    gc.enable()
+    try:
+        yield
+    finally:
+        gc.freeze()
+        gc.enable()
 
 
 def _give_up(client: Any, body: dict[str, Any], key: str) -> None:
