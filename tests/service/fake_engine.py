@@ -133,7 +133,9 @@ class FakeEngine:
         Path(work.png_out).write_bytes(PNG_MAGIC + hashlib.sha256(film).digest())
         merged = pb.PassMerged(min_samples=samples, max_samples=samples, mean_r=0.5, mean_g=0.25, mean_b=0.125)
         if samples >= 2:
-            merged.error_noise = merged.error_bound = samples**-0.5
+            merged.error_noise = samples**-0.5
+            if work.bound_error:
+                merged.error_bound = merged.error_noise
         self.reply(request_id, pass_merged=merged)
 
     def write_tile(self, request_id: int, work: pb.WriteTile) -> None:

@@ -130,22 +130,24 @@ FilmSummary Film::summary() const {
   const double count = static_cast<double>(pixels_.size());
   for (double& mean : result.mean) mean /= count;
   if (has_variance) result.error_noise = std::sqrt(squares / (3 * count));
-  if (result.min_samples == result.max_samples && is_look(result.max_samples)) result.error_bound = error_bound();
   return result;
 }
 
-double Film::error_bound() const {
+std::optional<double> Film::error_bound() const {
+  const std::uint32_t samples = pixels_.empty() ? 0 : pixels_.front().samples;
+  if (!is_look(samples)) return std::nullopt;
   ErrorBound bound;
   for (const Pixel& p : pixels_) {
-    const PixelMean m = pixel_mean(p.radiance, p.samples);
+    if (p.samples != samples) return std::nullopt;
+    const PixelMean m = pixel_mean(p.radiance, samples);
     double share = 0;
     for (int c = 0; c < 3; ++c) {
       // A single very bright sample raises the mean, which would hide the error that it makes; the median does not follow it.
-      share += relative(m.variance[c], std::min(m.mean[c], pixel_median(p.radiance, p.samples, c))) / 3;
+      share += relative(m.variance[c], std::min(m.mean[c], pixel_median(p.radiance, samples, c))) / 3;
     }
     bound.add(share);
   }
-  return bound.at(pixels_.front().samples);
+  return bound.at(samples);
 }
 
 Image Film::image(PixelRect rect, const ImageInfo& info) const {

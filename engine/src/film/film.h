@@ -28,9 +28,6 @@ struct FilmSummary {
   std::uint32_t min_samples = 0, max_samples = 0;
   // sqrt of the estimated relMSE, mean over pixels and channels of Var(I) / (I^2 + 1e-2); absent below two replicates.
   std::optional<double> error_noise;
-  // Upper bound of the true sqrt(relMSE) at the confidence that this look may spend (film/error_bound.h); absent when the pixels
-  // differ in their samples or their number is not that of a look.
-  std::optional<double> error_bound;
   double mean[3] = {0, 0, 0};
   std::uint64_t non_finite_samples = 0;
 };
@@ -55,6 +52,9 @@ class Film {
   void merge(const TileSums& tile);
 
   FilmSummary summary() const;
+  // Upper bound of the true sqrt(relMSE) at the confidence that this look may spend (film/error_bound.h); nothing when the pixels
+  // differ in their samples or their number is not that of a look. Sorts the replicates of every pixel: ask only where it decides.
+  std::optional<double> error_bound() const;
   // Layers R G B, albedo.*, N.*, Z, error.noise, samples of `rect` (inside the crop), with header attributes.
   // error.noise is the standard error of the pixel's Rec.709 luminance; infinite below two replicates: no claim.
   // Z is the mean depth of the samples that hit something, 1e10 where none did.
@@ -74,9 +74,6 @@ class Film {
     std::uint32_t padding = 0;  // written to the film file: keep it zero
   };
   const Pixel& pixel(int x, int y) const;
-  // Of a film whose pixels all have the samples of a look.
-  double error_bound() const;
-
   int width_, height_;
   PixelRect crop_;
   std::uint64_t non_finite_samples_ = 0;

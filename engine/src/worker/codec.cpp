@@ -52,7 +52,8 @@ MergePassRequest decode(const v1::MergePass& m) {
           m.film_out(),
           m.exr_out(),
           m.png_out(),
-          decode(m.info())};
+          decode(m.info()),
+          m.bound_error()};
 }
 
 WriteTileRequest decode(const v1::WriteTile& m) {
@@ -103,7 +104,7 @@ void encode(const PassMergedReply& r, v1::Reply& out) {
   m.set_min_samples(r.summary.min_samples);
   m.set_max_samples(r.summary.max_samples);
   if (r.summary.error_noise) m.set_error_noise(*r.summary.error_noise);
-  if (r.summary.error_bound) m.set_error_bound(*r.summary.error_bound);
+  if (r.error_bound) m.set_error_bound(*r.error_bound);
   m.set_mean_r(r.summary.mean[0]);
   m.set_mean_g(r.summary.mean[1]);
   m.set_mean_b(r.summary.mean[2]);

@@ -50,7 +50,8 @@ FrameResult render_frame(const Scene& scene, const Integrator& integrator, const
       result.film.merge(render_tile(scene, integrator, task, queries[static_cast<std::size_t>(thread)], cancelled));
     });
     result.summary = result.film.summary();
-    result.timeline.push_back({seconds_since(start), pass->end, result.summary.error_noise, result.summary.error_bound});
+    const std::optional<double> bound = settings.goal.rel_error ? result.film.error_bound() : std::nullopt;
+    result.timeline.push_back({seconds_since(start), pass->end, result.summary.error_noise, bound});
     if (after_pass) after_pass(result.timeline.back());
   }
   result.seconds = seconds_since(start);

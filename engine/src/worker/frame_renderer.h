@@ -32,7 +32,7 @@ struct TimelinePoint {
   double seconds = 0;  // since the first pass began
   std::uint32_t spp = 0;
   std::optional<double> error;        // FilmSummary::error_noise
-  std::optional<double> error_bound;  // FilmSummary::error_bound
+  std::optional<double> error_bound;  // Film::error_bound(), with a goal that needs it
 };
 
 struct FrameResult {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <fstream>
 #include <functional>
 #include <span>
@@ -56,15 +57,21 @@ std::optional<PassMerger::KeptFilm> PassMerger::take(const MergePassRequest& req
   return kept;
 }
 
-FilmSummary PassMerger::merge(const MergePassRequest& request) {
+void PassMerger::forget() {
+  const std::lock_guard lock(mutex_);
+  kept_.reset();
+}
+
+PassMergedReply PassMerger::merge(const MergePassRequest& request) {
+  const auto begin = std::chrono::steady_clock::now();
   std::optional<KeptFilm> kept = take(request);
   const std::size_t merged = kept ? kept->tiles.size() : 0;
   Film film = kept ? std::move(kept->film) : first_film(request, request.crop);
   merge_tiles(film, std::span(request.tiles).subspan(merged));
 
   const Image image = film.image(film.crop(), with_build(request.info));
-  FilmSummary summary;
-  const std::array<std::function<void()>, 4> outputs = {
+  PassMergedReply reply;
+  const std::array<std::function<void()>, 5> outputs = {
       [&] {
         if (!request.exr_out.empty()) write_exr(request.exr_out, image);
       },
@@ -74,7 +81,10 @@ FilmSummary PassMerger::merge(const MergePassRequest& request) {
       [&] {
         if (!request.png_out.empty()) write_png(request.png_out, image);
       },
-      [&] { summary = film.summary(); },
+      [&] { reply.summary = film.summary(); },
+      [&] {
+        if (request.bound_error) reply.error_bound = film.error_bound();
+      },
   };
   // At the end of a job nothing else is left to do, and its owner waits.
   parallel_for(outputs.size(), 2, [&](std::size_t index, int) { outputs[index](); });
@@ -84,7 +94,8 @@ FilmSummary PassMerger::merge(const MergePassRequest& request) {
     const std::lock_guard lock(mutex_);
     kept_ = KeptFilm{request.film_in, request.tiles, std::move(film)};
   }
-  return summary;
+  reply.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  return reply;
 }
 
 void write_tile(const WriteTileRequest& request) {

@@ -13,7 +13,9 @@ namespace fluxfarm {
 class PassMerger {
  public:
   // Throws ResourceError when a file cannot be read or written, Error when tiles do not follow the film.
-  FilmSummary merge(const MergePassRequest& request);
+  PassMergedReply merge(const MergePassRequest& request);
+  // Gives back the memory of the kept film.
+  void forget();
 
  private:
   struct KeptFilm {

@@ -42,6 +42,7 @@ struct MergePassRequest {
   std::vector<std::filesystem::path> tiles;
   std::filesystem::path film_out, exr_out, png_out;
   ImageInfo info;
+  bool bound_error = false;
 };
 
 struct WriteTileRequest {
@@ -100,6 +101,7 @@ struct TilesDoneReply {};
 
 struct PassMergedReply {
   FilmSummary summary;
+  std::optional<double> error_bound;  // Film::error_bound(), if asked for
   double seconds = 0;
 };
 

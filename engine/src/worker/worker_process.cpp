@@ -45,8 +45,6 @@ FailureReply failure_of(const std::exception_ptr& error) {
   }
 }
 
-double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
-
 // A request that is being carried out.
 struct Running {
   std::atomic<bool> cancelled{false};
@@ -91,6 +89,7 @@ class Worker {
   }
   void handle(std::uint64_t id, PingRequest) { reply(id, PongReply{}); }
   void handle(std::uint64_t, CancelRequest request) {
+    merger_.forget();  // a job that stops may not come back
     const std::lock_guard lock(running_mutex_);
     if (const auto found = running_.find(request.target); found != running_.end()) found->second->cancelled = true;
   }
@@ -117,11 +116,7 @@ class Worker {
     });
   }
   void handle(std::uint64_t id, MergePassRequest request) {
-    start(id, [this, request = std::move(request)]() -> ReplyBody {
-      const Clock::time_point begin = Clock::now();
-      const FilmSummary summary = merger_.merge(request);
-      return PassMergedReply{summary, seconds_since(begin)};
-    });
+    start(id, [this, request = std::move(request)]() -> ReplyBody { return merger_.merge(request); });
   }
   void handle(std::uint64_t id, WriteTileRequest request) {
     start(id, [request = std::move(request)]() -> ReplyBody {
@@ -175,7 +170,7 @@ class Worker {
       const TileSums sums =
           render_tile(loaded.scene, *loaded.integrator, {request.tiles[tile], request.samples, request.seed}, queries,
                       running.cancelled, [&](std::uint64_t samples) { tell_progress(id, running, samples); });
-      const double seconds = seconds_since(start);
+      const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
       if (!running.cancelled) {
         reply(id, TileDoneReply{tile, encode_tile_sums(sums), seconds, queries.rays(), sums.non_finite_samples});
       }

@@ -31,7 +31,7 @@ class Merge : public ::testing::Test {
   }
 
   MergePassRequest request(std::vector<fs::path> tiles, const fs::path& film_in = {}, const fs::path& film_out = {}) const {
-    return {3, 2, {0, 0, 3, 2}, film_in, std::move(tiles), film_out, folder_ / "image.exr", {}, {}};
+    return {3, 2, {0, 0, 3, 2}, film_in, std::move(tiles), film_out, folder_ / "image.exr", {}, {}, false};
   }
 
   static std::string bytes(const fs::path& path) {
@@ -51,7 +51,7 @@ TEST_F(Merge, InPiecesGivesTheFilmOfAllAtOnce) {
   PassMerger pieces;
   pieces.merge(request({tiles[0]}));
   pieces.merge(request({tiles[0], tiles[1]}));
-  EXPECT_EQ(pieces.merge(request(tiles, {}, folder_ / "pieces")).min_samples, 12u);
+  EXPECT_EQ(pieces.merge(request(tiles, {}, folder_ / "pieces")).summary.min_samples, 12u);
   EXPECT_EQ(bytes(folder_ / "at-once"), bytes(folder_ / "pieces"));
 
   PassMerger by_file;
@@ -65,7 +65,31 @@ TEST_F(Merge, ReadsOnlyTheTilesThatAreNewSinceTheLastMerge) {
   PassMerger merger;
   merger.merge(request({tiles[0]}));
   fs::remove(tiles[0]);
-  EXPECT_EQ(merger.merge(request(tiles)).min_samples, 4u);
+  EXPECT_EQ(merger.merge(request(tiles)).summary.min_samples, 4u);
+}
+
+TEST_F(Merge, ForgetsTheKeptFilmWhenTold) {
+  const std::vector<fs::path> tiles = {tile({0, 1}), tile({1, 4})};
+  PassMerger merger;
+  merger.merge(request({tiles[0]}));
+  merger.forget();
+  fs::remove(tiles[0]);
+  EXPECT_THROW(merger.merge(request(tiles)), ResourceError);
+}
+
+TEST_F(Merge, BoundsTheErrorOnlyWhenAsked) {
+  MergePassRequest plain = request({tile({0, 16})});
+  PassMerger merger;
+  EXPECT_FALSE(merger.merge(plain).error_bound.has_value());
+  plain.bound_error = true;
+  EXPECT_TRUE(merger.merge(plain).error_bound.has_value());
+  EXPECT_FALSE(merger
+                   .merge([&] {
+                     plain.tiles.push_back(tile({16, 20}));
+                     return plain;
+                   }())
+                   .error_bound.has_value())
+      << "no look at 20";
 }
 
 TEST_F(Merge, AnotherJobOrAFailureInBetweenReadsEverythingAgain) {
@@ -73,9 +97,9 @@ TEST_F(Merge, AnotherJobOrAFailureInBetweenReadsEverythingAgain) {
   PassMerger merger;
   merger.merge(request({tiles[0]}));
   merger.merge(request({tile({0, 2})}));  // another job
-  EXPECT_EQ(merger.merge(request(tiles)).min_samples, 4u);
+  EXPECT_EQ(merger.merge(request(tiles)).summary.min_samples, 4u);
   EXPECT_THROW(merger.merge(request({tiles[0], tiles[1], folder_ / "absent"})), ResourceError);
-  EXPECT_EQ(merger.merge(request(tiles)).min_samples, 4u);
+  EXPECT_EQ(merger.merge(request(tiles)).summary.min_samples, 4u);
 }
 
 }  // namespace

@@ -72,6 +72,7 @@ class MergeLease(Lease):
     png_out: Path
     info: ImageInfo
     passes: int
+    bound_error: bool
 
 
 @dataclass(frozen=True, slots=True)

@@ -150,6 +150,7 @@ class Dispatcher:
             png_out=self._blobs.scratch(run.id, f"{fence}.png"),
             info=ImageInfo(run.id, run.request.bundle.digest(), facts.integrator, run.request.seed),
             passes=ready[-1].index + 1,
+            bound_error=run.request.goal.rel_error is not None,
         )
 
 

@@ -182,6 +182,7 @@ def _merge_pass(work: MergeLease) -> pb.MergePass:
         exr_out=str(work.exr_out),
         png_out=str(work.png_out),
         info=_info(work.info),
+        bound_error=work.bound_error,
     )
 
 
