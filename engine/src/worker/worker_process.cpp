@@ -25,7 +25,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr std::size_t kKeptScenes = 8;
-constexpr std::chrono::milliseconds kProgressInterval{100};
+constexpr std::chrono::milliseconds kProgressInterval{250};
 
 FailureReply failure_of(const std::exception_ptr& error) {
   try {

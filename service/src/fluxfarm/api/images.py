@@ -18,6 +18,8 @@ from fluxfarm.errors import Conflict, NotYetThere
 router = APIRouter(tags=["images"])
 EXR = "image/x-exr"
 PNG = "image/png"
+# Each chunk is a trip to a thread and back.
+CHUNK_BYTES = 1 << 20
 _SINGLE_RANGE = re.compile(r"bytes=(\d{1,18}-\d{0,18}|-\d{1,18})")
 
 
@@ -122,7 +124,9 @@ def image_response(request: Request, path: Path, sha256: str, media_type: str, r
         return problem(
             416, "range-not-satisfiable", detail, extra=None, headers=headers | {"Content-Range": f"bytes */{size}"}
         )
-    return FileResponse(path, media_type=media_type, headers=headers, stat_result=path.stat())
+    response = FileResponse(path, media_type=media_type, headers=headers, stat_result=path.stat())
+    response.chunk_size = CHUNK_BYTES
+    return response
 
 
 def unsatisfiable(text: str, size: int) -> bool:
