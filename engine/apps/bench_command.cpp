@@ -14,6 +14,7 @@
 #include "scene_options.h"
 #include "support/error.h"
 #include "support/parallel.h"
+#include "film/tile_grid.h"
 #include "worker/tile_runner.h"
 
 namespace fluxfarm {

@@ -3,6 +3,7 @@
 
 #include <atomic>
 #include <chrono>
+#include <cmath>
 #include <csignal>
 #include <cstdio>
 #include <fstream>
@@ -55,7 +56,7 @@ nlohmann::json or_null(const std::optional<double>& value) { return value ? nloh
 
 void say_progress(const TimelinePoint& point) {
   if (isatty(STDERR_FILENO) == 0) return;
-  std::fprintf(stderr, "\r%8.1f s  %6u spp  error %-10s", point.seconds, point.spp,
+  std::fprintf(stderr, "\r%8.1f s  %8.6g spp  error %-10s", point.seconds, point.spp,
                point.error ? std::to_string(*point.error).c_str() : "-");
 }
 
@@ -115,8 +116,8 @@ void render(const RenderOptions& options) {
       {"threads", threads},
       {"seed", options.seed},
       {"seconds", {{"load", load}, {"build", build}, {"prepare", prepare}, {"render", result.seconds}, {"write", write}}},
-      {"spp", result.summary.max_samples},
-      {"samples", static_cast<std::uint64_t>(result.summary.max_samples) * static_cast<std::uint64_t>(settings.crop.pixels())},
+      {"spp", result.summary.mean_samples},
+      {"samples", static_cast<std::uint64_t>(std::llround(result.summary.mean_samples * settings.crop.pixels()))},
       {"rays", result.rays},
       {"rays_per_second", static_cast<double>(result.rays) / result.seconds},
       {"mean", result.summary.mean},

@@ -44,7 +44,7 @@ class FakeEngine:
         self.scenes: dict[str, dict[str, str]] = {}
 
     def run(self) -> None:
-        self.reply(0, hello=pb.Hello(protocol_version=1, engine_build="fake-1", threads=self.threads, pid=os.getpid()))
+        self.reply(0, hello=pb.Hello(protocol_version=2, engine_build="fake-1", threads=self.threads, pid=os.getpid()))
         threading.Thread(target=self.read_to_the_end, daemon=True).start()
         while (request := self.requests.get()) is not None:
             kind = request.WhichOneof("body")
@@ -131,11 +131,12 @@ class FakeEngine:
             Path(work.film_out).write_bytes(film)
         Path(work.exr_out).write_bytes(image(film, samples))
         Path(work.png_out).write_bytes(PNG_MAGIC + hashlib.sha256(film).digest())
-        merged = pb.PassMerged(min_samples=samples, max_samples=samples, mean_r=0.5, mean_g=0.25, mean_b=0.125)
+        counts = {"min_samples": samples, "max_samples": samples, "mean_samples": samples}
+        merged = pb.PassMerged(**counts, mean_r=0.5, mean_g=0.25, mean_b=0.125)
         if samples >= 2:
             merged.error_noise = samples**-0.5
-            if work.bound_error:
-                merged.error_bound = merged.error_noise
+            if work.HasField("error_goal"):
+                decide(work, merged)
         self.reply(request_id, pass_merged=merged)
 
     def write_tile(self, request_id: int, work: pb.WriteTile) -> None:
@@ -166,6 +167,17 @@ def image(film: bytes, samples: int) -> bytes:
     return EXR_MAGIC + struct.pack("<I", samples) + hashlib.sha256(film).digest() + bytes(1000)
 
 
+def decide(work: pb.MergePass, merged: pb.PassMerged) -> None:
+    """The bound is the estimate; while it is too large every tile goes on."""
+    goal, samples = work.error_goal, merged.max_samples
+    merged.error_bound = merged.error_noise
+    merged.samples_expected = work.crop.width * work.crop.height * goal.rel_error**-2
+    if merged.error_bound > goal.rel_error and samples < goal.most_samples:
+        tiles = -(-work.crop.width // 32) * -(-work.crop.height // 32)
+        merged.next_round.samples.begin, merged.next_round.samples.end = samples, min(2 * samples, goal.most_samples)
+        merged.next_round.tiles.extend(range(tiles))
+
+
 def read(path: str) -> bytes:
     return Path(path).read_bytes() if path and Path(path).exists() else b""
 
@@ -183,7 +195,7 @@ def main() -> None:
     parser.add_argument("--json", action="store_true")
     arguments = parser.parse_args()
     if arguments.command == "info":
-        print('{"build": "fake-1", "protocol_version": 1}')
+        print('{"build": "fake-1", "protocol_version": 2}')
         return
     FakeEngine(socket.socket(fileno=arguments.fd), arguments.threads).run()
 

@@ -80,11 +80,14 @@ def test_report_and_chart_tell_the_error_over_time(client: Client) -> None:
     assert report["samples"] == 32 * 32 * 32
     assert report["rays"] == report["samples"]
     assert set(report["seconds"]) == {"QUEUED", "PREPARING", "RUNNING", "FINALIZING", "SUCCEEDED"}
-    assert [point["spp"] for point in report["timeline"]] == [1, 2, 4, 8, 16, 32]
+    spp = [point["spp"] for point in report["timeline"]]
+    assert spp[0] == 1
+    assert spp == sorted(spp)
+    assert {16, 32} <= set(spp), "both decisions"
     assert report["plan"] == client.http.get(f"/v1/jobs/{job_id}/plan").json()
     chart = client.http.get(f"/v1/jobs/{job_id}/chart.svg")
     assert chart.headers["content-type"].startswith("image/svg+xml")
-    assert chart.text.count("<circle") == 5
+    assert chart.text.count("<circle") == len(spp) - 1, "one sample has no error"
 
 
 def test_system_workers_health_and_metrics_answer(client: Client) -> None:

@@ -5,8 +5,8 @@ from itertools import pairwise
 from hypothesis import given
 from hypothesis import strategies as st
 
-from fluxfarm.domain.goal import Goal, Limits, Measured, Stop, has_barriers, next_pass, settled
-from fluxfarm.domain.schedule import PASS_CEILING_SPP, pass_count, pass_samples, passes
+from fluxfarm.domain.goal import Goal, Limits, Measured, Stop, first_round, has_barriers, next_pass, settled
+from fluxfarm.domain.schedule import PASS_CEILING_SPP, Round, SampleRange, next_range, pass_count, passes
 
 NO_LIMITS = Limits()
 
@@ -25,43 +25,56 @@ def test_passes_cover_each_sample_exactly_once(goal: int) -> None:
     assert len(ranges) == pass_count(goal)
 
 
-@given(st.integers(2, 6))
-def test_early_passes_double_what_is_there(index: int) -> None:
-    assert pass_samples(index) == sum(pass_samples(before) for before in range(index))
+@given(st.integers(0, 6))
+def test_early_passes_double_what_is_there(power: int) -> None:
+    assert next_range(1 << power, 1 << 20) == SampleRange(1 << power, 2 << power)
+
+
+def measured(goal: Goal, spp: int, running_s: float, sample_s: float) -> Measured:
+    """State of a job without an error goal after `spp` samples per pixel."""
+    return Measured(first_round(goal, NO_LIMITS), spp, running_s, sample_s, None, None)
 
 
 @given(st.integers(1, 5000))
-def test_sample_goal_takes_exactly_its_samples(goal: int) -> None:
-    done = taken = 0
-    while not isinstance(step := next_pass(Goal(spp=goal), NO_LIMITS, Measured(taken, done, 1.0, None, None)), Stop):
-        done, taken = step.end, taken + 1
-    assert done == goal
+def test_sample_goal_takes_exactly_its_samples(spp: int) -> None:
+    goal, done = Goal(spp=spp), 0
+    while not isinstance(step := next_pass(goal, NO_LIMITS, measured(goal, done, 1.0, 0.0)), Stop):
+        done = step.end
+    assert done == spp
     assert step.warning is None
 
 
 @given(st.floats(0.1, 1000), st.floats(0.001, 100))
 def test_time_goal_is_never_overshot_by_more_than_a_sample(seconds: float, sample_s: float) -> None:
-    done = taken = 0
+    goal, done = Goal(seconds=seconds), 0
     while not isinstance(
-        step := next_pass(Goal(seconds=seconds), NO_LIMITS, Measured(taken, done, done * sample_s, None, None)), Stop
+        step := next_pass(goal, NO_LIMITS, measured(goal, done, done * sample_s, sample_s if done else 0.0)), Stop
     ):
-        done, taken = step.end, taken + 1
+        done = step.end
     assert done >= 1
     assert done * sample_s <= max(seconds, sample_s) + sample_s
 
 
-def test_error_goal_stops_when_the_bound_meets_it_and_not_when_only_the_estimate_does() -> None:
+def test_error_goal_begins_with_a_round_of_sixteen_samples_everywhere() -> None:
+    assert first_round(Goal(rel_error=0.1), NO_LIMITS) == Round(1, SampleRange(0, 16))
+    assert first_round(Goal(rel_error=0.1), Limits(spp=5)) == Round(1, SampleRange(0, 5))
+
+
+def test_error_goal_without_a_further_round_is_reached_by_its_bound_and_not_by_its_estimate() -> None:
     goal = Goal(rel_error=0.1)
-    assert isinstance(next_pass(goal, NO_LIMITS, Measured(6, 32, 1.0, 0.08, 0.09)), Stop)
-    assert not isinstance(next_pass(goal, NO_LIMITS, Measured(6, 32, 1.0, 0.09, 0.11)), Stop)
-    assert not isinstance(next_pass(goal, NO_LIMITS, Measured(6, 48, 1.0, 0.001, None)), Stop)
+    assert next_pass(goal, NO_LIMITS, Measured(None, 32, 1.0, 0.1, 0.08, 0.09)) == Stop()
+    missed = next_pass(goal, NO_LIMITS, Measured(None, 64, 2.0, 0.1, 0.08, 0.11))
+    assert isinstance(missed, Stop)
+    assert missed.warning is not None
+    assert "0.08" in missed.warning
+    assert "0.1;" in missed.warning
 
 
-def test_limit_that_ends_a_job_early_says_so() -> None:
-    step = next_pass(Goal(rel_error=0.001), Limits(spp=64), Measured(7, 64, 2.0, 0.2, 0.25))
+def test_limit_of_time_ends_a_round_early_and_says_so() -> None:
+    late = Measured(Round(3, SampleRange(64, 128), (1,)), 64, 9.8, 1.0, 0.2, None)
+    step = next_pass(Goal(rel_error=0.001), Limits(seconds=10), late)
     assert isinstance(step, Stop)
     assert step.warning is not None
-    assert "0.2" in step.warning
     assert "0.001" in step.warning
 
 
@@ -71,7 +84,9 @@ def test_absent_goal_is_the_scenes_own_sample_count() -> None:
     assert settled(Goal(seconds=3), 12) == Goal(seconds=3)
 
 
-def test_only_sample_goals_without_time_limit_go_on_without_barriers() -> None:
+def test_only_time_needs_a_barrier_after_each_pass() -> None:
     assert not has_barriers(Goal(spp=8), NO_LIMITS)
+    assert not has_barriers(Goal(rel_error=0.1), NO_LIMITS)
+    assert has_barriers(Goal(seconds=3), NO_LIMITS)
     assert has_barriers(Goal(spp=8), Limits(seconds=1))
-    assert has_barriers(Goal(rel_error=0.1), NO_LIMITS)
+    assert has_barriers(Goal(rel_error=0.1), Limits(seconds=1))

@@ -1,7 +1,6 @@
 #include "film/error_bound.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -12,24 +11,18 @@
 namespace fluxfarm {
 namespace {
 
-// Two samples in each replicate: with fewer, their spread says too little.
-constexpr std::uint32_t kFirstLook = 16;
 constexpr double kRisk = 0.05;
 
 }  // namespace
 
-bool is_look(std::uint32_t samples) { return samples >= kFirstLook && std::has_single_bit(samples); }
-
-double ErrorBound::at(std::uint32_t samples) const {
-  FLUXFARM_CHECK(is_look(samples) && pixels_ > 0, "a bound is asked for at a look");
-  const int look = std::bit_width(samples) - std::bit_width(kFirstLook) + 1;
-  const double z = gaussian_upper_quantile(std::ldexp(kRisk, -look));
-  const double estimate = sum_ / static_cast<double>(pixels_);
+double ErrorBound::at(int number) const {
+  FLUXFARM_CHECK(number >= 1 && pixels_ > 0, "a bound is asked for at a look, of some pixels");
+  const double z = gaussian_upper_quantile(std::ldexp(kRisk, -number));
   if (squares_ == 0) return 0.0;
   // Squares of estimated variances are (R + 1) / (R - 1) times too large in the mean. That is left in: where few pixels carry the
   // error, their number is itself uncertain.
   const double carriers = sum_ * sum_ / squares_;
-  return std::sqrt(estimate * f_upper_quantile(carriers, (kFilmReplicates - 1) * carriers, z));
+  return std::sqrt(estimate() * f_upper_quantile(carriers, (kFilmReplicates - 1) * carriers, z));
 }
 
 double f_upper_quantile(double n, double m, double z) {

@@ -8,7 +8,6 @@
 #include <fstream>
 #include <limits>
 
-#include "film/error_bound.h"
 #include "support/error.h"
 
 namespace fluxfarm {
@@ -30,9 +29,6 @@ struct PixelMean {
 };
 
 constexpr double kLuminance[3] = {0.2126, 0.7152, 0.0722};
-
-// A variance as a share of relMSE, by an estimate of the true value.
-double relative(double variance, double value) { return variance / (value * value + 1e-2); }
 
 PixelMean pixel_mean(const double radiance[kFilmReplicates][3], std::uint32_t samples) {
   PixelMean result{};
@@ -61,12 +57,14 @@ PixelMean pixel_mean(const double radiance[kFilmReplicates][3], std::uint32_t sa
   return result;
 }
 
-// Median over the replicates of their means, of one channel.
-double pixel_median(const double radiance[kFilmReplicates][3], std::uint32_t samples, int channel) {
+// Median of the replicates' means of one channel.
+double replicate_median(const double radiance[kFilmReplicates][3], std::uint32_t samples, int channel) {
+  const std::uint32_t replicates = std::min(samples, kFilmReplicates);
+  if (replicates == 0) return 0;
   std::array<double, kFilmReplicates> means;
-  for (std::uint32_t r = 0; r < kFilmReplicates; ++r) means[r] = radiance[r][channel] / replicate_samples(samples, r);
-  std::nth_element(means.begin(), means.begin() + kFilmReplicates / 2, means.end());
-  return means[kFilmReplicates / 2];
+  for (std::uint32_t r = 0; r < replicates; ++r) means[r] = radiance[r][channel] / replicate_samples(samples, r);
+  std::nth_element(means.begin(), means.begin() + replicates / 2, means.begin() + replicates);
+  return means[replicates / 2];
 }
 
 template <typename T>
@@ -121,33 +119,30 @@ FilmSummary Film::summary() const {
     const PixelMean m = pixel_mean(p.radiance, p.samples);
     result.min_samples = std::min(result.min_samples, p.samples);
     result.max_samples = std::max(result.max_samples, p.samples);
+    result.mean_samples += p.samples;
     has_variance = has_variance && m.has_variance;
     for (int c = 0; c < 3; ++c) {
       result.mean[c] += m.mean[c];
-      squares += relative(m.variance[c], m.mean[c]);
+      squares += m.variance[c] / (m.mean[c] * m.mean[c] + 1e-2);
     }
   }
   const double count = static_cast<double>(pixels_.size());
   for (double& mean : result.mean) mean /= count;
+  result.mean_samples /= count;
   if (has_variance) result.error_noise = std::sqrt(squares / (3 * count));
   return result;
 }
 
-std::optional<double> Film::error_bound() const {
-  const std::uint32_t samples = pixels_.empty() ? 0 : pixels_.front().samples;
-  if (!is_look(samples)) return std::nullopt;
-  ErrorBound bound;
-  for (const Pixel& p : pixels_) {
-    if (p.samples != samples) return std::nullopt;
-    const PixelMean m = pixel_mean(p.radiance, samples);
-    double share = 0;
-    for (int c = 0; c < 3; ++c) {
-      // A single very bright sample raises the mean, which would hide the error that it makes; the median does not follow it.
-      share += relative(m.variance[c], std::min(m.mean[c], pixel_median(p.radiance, samples, c))) / 3;
-    }
-    bound.add(share);
+PixelEstimate Film::estimate(int x, int y) const {
+  const Pixel& p = pixel(x, y);
+  const PixelMean m = pixel_mean(p.radiance, p.samples);
+  PixelEstimate estimate{};
+  for (int c = 0; c < 3; ++c) {
+    estimate.mean[c] = m.mean[c];
+    estimate.variance[c] = m.variance[c];
+    estimate.median[c] = replicate_median(p.radiance, p.samples, c);
   }
-  return bound.at(samples);
+  return estimate;
 }
 
 Image Film::image(PixelRect rect, const ImageInfo& info) const {

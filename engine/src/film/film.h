@@ -26,6 +26,7 @@ inline constexpr float kNoiseInterval95 = 2.364624f;
 
 struct FilmSummary {
   std::uint32_t min_samples = 0, max_samples = 0;
+  double mean_samples = 0;  // per pixel
   // sqrt of the estimated relMSE, mean over pixels and channels of Var(I) / (I^2 + 1e-2); absent below two replicates.
   std::optional<double> error_noise;
   double mean[3] = {0, 0, 0};
@@ -36,6 +37,12 @@ struct FilmSummary {
 struct ImageInfo {
   std::string job, scene_digest, integrator, engine_build;
   std::uint64_t seed = 0;
+};
+
+struct PixelEstimate {
+  double mean[3];
+  double variance[3];  // of the mean
+  double median[3];    // of the replicates' means
 };
 
 class Film {
@@ -52,9 +59,9 @@ class Film {
   void merge(const TileSums& tile);
 
   FilmSummary summary() const;
-  // Upper bound of the true sqrt(relMSE) at the confidence that this look may spend (film/error_bound.h); nothing when the pixels
-  // differ in their samples or their number is not that of a look. Sorts the replicates of every pixel: ask only where it decides.
-  std::optional<double> error_bound() const;
+  // The pixel at (x, y) of the frame, R G B. No variance below two replicates.
+  PixelEstimate estimate(int x, int y) const;
+  std::uint32_t samples(int x, int y) const { return pixel(x, y).samples; }
   // Layers R G B, albedo.*, N.*, Z, error.noise, samples of `rect` (inside the crop), with header attributes.
   // error.noise is the standard error of the pixel's Rec.709 luminance; infinite below two replicates: no claim.
   // Z is the mean depth of the samples that hit something, 1e10 where none did.

@@ -43,6 +43,10 @@ RenderTilesRequest decode(const v1::RenderTiles& m) {
   return request;
 }
 
+MergePassRequest::Decision decode(const v1::ErrorGoal& m) {
+  return {{m.rel_error(), m.most_samples()}, static_cast<int>(m.round())};
+}
+
 MergePassRequest decode(const v1::MergePass& m) {
   return {static_cast<int>(m.width()),
           static_cast<int>(m.height()),
@@ -53,7 +57,7 @@ MergePassRequest decode(const v1::MergePass& m) {
           m.exr_out(),
           m.png_out(),
           decode(m.info()),
-          m.bound_error()};
+          m.has_error_goal() ? std::optional(decode(m.error_goal())) : std::nullopt};
 }
 
 WriteTileRequest decode(const v1::WriteTile& m) {
@@ -99,12 +103,23 @@ void encode(const TileDoneReply& r, v1::Reply& out) {
 
 void encode(const TilesDoneReply&, v1::Reply& out) { out.mutable_tiles_done(); }
 
+void encode(const ErrorLook& look, v1::PassMerged& out) {
+  out.set_error_bound(look.bound);
+  out.set_samples_expected(look.samples);
+  if (!look.next) return;
+  v1::Round& round = *out.mutable_next_round();
+  round.mutable_samples()->set_begin(look.next->samples.begin);
+  round.mutable_samples()->set_end(look.next->samples.end);
+  round.mutable_tiles()->Assign(look.next->tiles.begin(), look.next->tiles.end());
+}
+
 void encode(const PassMergedReply& r, v1::Reply& out) {
   v1::PassMerged& m = *out.mutable_pass_merged();
   m.set_min_samples(r.summary.min_samples);
   m.set_max_samples(r.summary.max_samples);
+  m.set_mean_samples(r.summary.mean_samples);
   if (r.summary.error_noise) m.set_error_noise(*r.summary.error_noise);
-  if (r.error_bound) m.set_error_bound(*r.error_bound);
+  if (r.look) encode(*r.look, m);
   m.set_mean_r(r.summary.mean[0]);
   m.set_mean_g(r.summary.mean[1]);
   m.set_mean_b(r.summary.mean[2]);

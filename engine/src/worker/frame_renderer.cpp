@@ -1,10 +1,11 @@
 #include "worker/frame_renderer.h"
 
 #include <chrono>
-#include <cmath>
 #include <limits>
 
+#include "film/error_goal.h"
 #include "film/pass_schedule.h"
+#include "film/tile_grid.h"
 #include "support/parallel.h"
 #include "worker/tile_runner.h"
 
@@ -15,23 +16,22 @@ using Clock = std::chrono::steady_clock;
 
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
-// The next pass, or nothing when the goal is reached. With a time goal the pass is cut to what fits, by the rate so far.
-std::optional<SampleRange> choose_pass(const Goal& goal, const std::vector<TimelinePoint>& timeline) {
-  if (timeline.empty()) return next_pass(0, goal.spp.value_or(1));
-  const TimelinePoint& now = timeline.back();
-  if (goal.spp) {
-    if (now.spp >= *goal.spp) return std::nullopt;
-    return next_pass(now.spp, *goal.spp);
-  }
-  if (goal.rel_error && now.error_bound && *now.error_bound <= *goal.rel_error) return std::nullopt;
-  SampleRange pass = next_pass(now.spp, std::numeric_limits<std::uint32_t>::max());
-  if (goal.seconds) {
-    const double left = *goal.seconds - now.seconds;
-    const double fits = left * now.spp / now.seconds;
-    if (fits < 0.5) return std::nullopt;
-    pass.end = pass.begin + std::min(pass.size(), static_cast<std::uint32_t>(std::max(1.0, fits)));
-  }
-  return pass;
+constexpr std::uint32_t kUnbounded = std::numeric_limits<std::uint32_t>::max();
+
+// All samples that are known to be wanted at the beginning: those of a goal other than an error make up one round.
+Round begin(const FrameSettings& settings, std::size_t tiles) {
+  if (settings.goal.rel_error) return first_round({*settings.goal.rel_error, kUnbounded}, settings.crop);
+  Round round{{0, settings.goal.spp.value_or(kUnbounded)}, {}};
+  for (std::uint32_t tile = 0; tile < tiles; ++tile) round.tiles.push_back(tile);
+  return round;
+}
+
+// Cuts a pass to what fits into the time, by the rate so far. False if nothing does.
+bool cut_to_time(SampleRange& pass, double seconds, const TimelinePoint& now) {
+  const double fits = (seconds - now.seconds) * now.spp / now.seconds;
+  if (fits < 0.5) return false;
+  pass.end = pass.begin + std::min(pass.size(), static_cast<std::uint32_t>(std::max(1.0, fits)));
+  return true;
 }
 
 }  // namespace
@@ -39,20 +39,30 @@ std::optional<SampleRange> choose_pass(const Goal& goal, const std::vector<Timel
 FrameResult render_frame(const Scene& scene, const Integrator& integrator, const FrameSettings& settings,
                          const std::atomic<bool>& cancelled, const std::function<void(const TimelinePoint&)>& after_pass) {
   FrameResult result{Film(scene.film().width, scene.film().height, settings.crop), {}, {}, 0, 0};
-  const std::vector<PixelRect> tiles = make_tiles(settings.crop, settings.tile_size);
+  const Goal& goal = settings.goal;
+  const std::vector<PixelRect> tiles = make_tiles(settings.crop, goal.rel_error ? kErrorTile : settings.tile_size);
   std::vector<RayQueries> queries(static_cast<std::size_t>(settings.threads), RayQueries(scene.accelerator()));
   const Clock::time_point start = Clock::now();
-  while (const std::optional<SampleRange> pass = choose_pass(settings.goal, result.timeline)) {
-    parallel_for(tiles.size(), settings.threads, [&](std::size_t index, int thread) {
-      prepare_render_thread();
-      const TileTask task{tiles[index], *pass, settings.seed};
-      // Tiles are disjoint: threads write to different pixels of the film, and only the counter is shared.
-      result.film.merge(render_tile(scene, integrator, task, queries[static_cast<std::size_t>(thread)], cancelled));
-    });
-    result.summary = result.film.summary();
-    const std::optional<double> bound = settings.goal.rel_error ? result.film.error_bound() : std::nullopt;
-    result.timeline.push_back({seconds_since(start), pass->end, result.summary.error_noise, bound});
-    if (after_pass) after_pass(result.timeline.back());
+  std::optional<Round> round = begin(settings, tiles.size());
+  for (int number = 1; round; ++number) {
+    std::optional<ErrorLook> look;
+    for (std::uint32_t done = round->samples.begin; done < round->samples.end;) {
+      SampleRange pass = next_pass(done, round->samples.end);
+      if (goal.seconds && !result.timeline.empty() && !cut_to_time(pass, *goal.seconds, result.timeline.back())) break;
+      parallel_for(round->tiles.size(), settings.threads, [&](std::size_t index, int thread) {
+        prepare_render_thread();
+        const TileTask task{tiles[round->tiles[index]], pass, settings.seed};
+        // Tiles are disjoint: threads write to different pixels of the film, and only the counter is shared.
+        result.film.merge(render_tile(scene, integrator, task, queries[static_cast<std::size_t>(thread)], cancelled));
+      });
+      done = pass.end;
+      result.summary = result.film.summary();
+      if (goal.rel_error && done == round->samples.end) look = look_at(result.film, {*goal.rel_error, kUnbounded}, number);
+      result.timeline.push_back({seconds_since(start), result.summary.mean_samples, result.summary.error_noise,
+                                 look ? std::optional(look->bound) : std::nullopt});
+      if (after_pass) after_pass(result.timeline.back());
+    }
+    round = look ? std::move(look->next) : std::nullopt;
   }
   result.seconds = seconds_since(start);
   for (const RayQueries& query : queries) result.rays += query.rays();

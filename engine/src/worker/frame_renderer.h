@@ -16,12 +16,12 @@ namespace fluxfarm {
 struct Goal {
   std::optional<std::uint32_t> spp;
   std::optional<double> seconds;    // wall time of the passes
-  std::optional<double> rel_error;  // sqrt(relMSE), with 95 % confidence (film/error_bound.h)
+  std::optional<double> rel_error;  // sqrt(relMSE), with 95 % confidence (film/error_goal.h)
 };
 
 struct FrameSettings {
   PixelRect crop;
-  int tile_size = 64;
+  int tile_size = 64;  // an error goal has its own
   int threads = 1;
   std::uint64_t seed = 0;
   Goal goal;
@@ -30,9 +30,9 @@ struct FrameSettings {
 // State after a pass.
 struct TimelinePoint {
   double seconds = 0;  // since the first pass began
-  std::uint32_t spp = 0;
-  std::optional<double> error;        // FilmSummary::error_noise
-  std::optional<double> error_bound;  // Film::error_bound(), with a goal that needs it
+  double spp = 0;              // mean over the pixels
+  std::optional<double> error;  // FilmSummary::error_noise
+  std::optional<double> error_bound;  // ErrorLook::bound, after a round towards an error goal
 };
 
 struct FrameResult {

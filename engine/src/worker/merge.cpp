@@ -83,7 +83,7 @@ PassMergedReply PassMerger::merge(const MergePassRequest& request) {
       },
       [&] { reply.summary = film.summary(); },
       [&] {
-        if (request.bound_error) reply.error_bound = film.error_bound();
+        if (request.decision) reply.look = look_at(film, request.decision->goal, request.decision->round);
       },
   };
   // At the end of a job nothing else is left to do, and its owner waits.

@@ -8,12 +8,13 @@
 #include <variant>
 #include <vector>
 
+#include "film/error_goal.h"
 #include "film/film.h"
 #include "film/pixel_rect.h"
 
 namespace fluxfarm {
 
-inline constexpr std::uint32_t kProtocolVersion = 1;
+inline constexpr std::uint32_t kProtocolVersion = 2;
 
 // ---------------------------------------------------------------- requests
 
@@ -42,7 +43,12 @@ struct MergePassRequest {
   std::vector<std::filesystem::path> tiles;
   std::filesystem::path film_out, exr_out, png_out;
   ImageInfo info;
-  bool bound_error = false;
+  // The decision that is due after these tiles, if any.
+  struct Decision {
+    ErrorGoal goal;
+    int round = 1;
+  };
+  std::optional<Decision> decision;
 };
 
 struct WriteTileRequest {
@@ -101,7 +107,7 @@ struct TilesDoneReply {};
 
 struct PassMergedReply {
   FilmSummary summary;
-  std::optional<double> error_bound;  // Film::error_bound(), if asked for
+  std::optional<ErrorLook> look;  // if a decision was due
   double seconds = 0;
 };
 

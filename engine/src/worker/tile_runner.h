@@ -22,7 +22,4 @@ struct TileTask {
 TileSums render_tile(const Scene& scene, const Integrator& integrator, const TileTask& task, RayQueries& queries,
                      const std::atomic<bool>& cancelled, const std::function<void(std::uint64_t)>& progress = {});
 
-// Tiles of at most size x size pixels that cover `area` once, row by row.
-std::vector<PixelRect> make_tiles(PixelRect area, int size);
-
 }  // namespace fluxfarm

@@ -1,5 +1,6 @@
 """Wires the parts together: settings in, a running service out."""
 
+import asyncio
 import logging
 import socket
 from collections.abc import Callable
@@ -102,15 +103,29 @@ class Server(uvicorn.Server):
         self._app.state.services.orchestrator.watch.close()
         await super().shutdown(sockets)
 
+    def abort(self) -> None:
+        """Close every connection at once."""
+        for listener in self.servers:
+            listener.close()
+        for connection in self.server_state.connections:
+            if connection.transport is not None:
+                connection.transport.close()
+
 
 async def serve(settings: Settings, listening: socket.socket, ready: Callable[[Server], None]) -> None:
-    """Run the service on a bound socket until the server given to `ready` is told to stop; raises StartError."""
+    """Run the service on a bound socket until the server given to `ready` is told to stop; raises StartError.
+
+    Cancelled, it ends without waiting for those that it serves."""
     async with AsyncExitStack() as stack:
         app = create_app()
         app.state.services = await start_services(settings, stack)
         server = Server(app, settings)
         ready(server)
-        await server.serve(sockets=[listening])
+        try:
+            await server.serve(sockets=[listening])
+        except asyncio.CancelledError:
+            server.abort()
+            raise
 
 
 def bind(settings: Settings) -> socket.socket:

@@ -15,13 +15,13 @@ from fluxfarm.domain.leases import Lease, Outcome
 from fluxfarm.domain.records import (
     JobRecord,
     JobRequest,
+    OpenedPass,
     Revision,
     SceneFacts,
     TileCommit,
     Unmerged,
 )
 from fluxfarm.domain.scene import SceneBundle
-from fluxfarm.domain.schedule import SampleRange
 from fluxfarm.domain.tiles import TileGrid
 
 
@@ -117,7 +117,7 @@ class Ledger(Protocol):
     def grant(self, fence: int, job_id: str) -> None:
         """Record a lease before its first commit. Does not wait."""
 
-    def open_pass(self, job_id: str, index: int, samples: SampleRange) -> None:
+    def open_pass(self, job_id: str, opened: OpenedPass) -> None:
         """Record that a pass began. Does not wait."""
 
     async def commit_tiles(self, commits: Sequence[TileCommit], ended: Sequence[int]) -> list[bool]:

@@ -31,7 +31,7 @@ class Merge : public ::testing::Test {
   }
 
   MergePassRequest request(std::vector<fs::path> tiles, const fs::path& film_in = {}, const fs::path& film_out = {}) const {
-    return {3, 2, {0, 0, 3, 2}, film_in, std::move(tiles), film_out, folder_ / "image.exr", {}, {}, false};
+    return {3, 2, {0, 0, 3, 2}, film_in, std::move(tiles), film_out, folder_ / "image.exr", {}, {}, {}};
   }
 
   static std::string bytes(const fs::path& path) {
@@ -77,19 +77,15 @@ TEST_F(Merge, ForgetsTheKeptFilmWhenTold) {
   EXPECT_THROW(merger.merge(request(tiles)), ResourceError);
 }
 
-TEST_F(Merge, BoundsTheErrorOnlyWhenAsked) {
+TEST_F(Merge, DecidesOnlyWhenAsked) {
   MergePassRequest plain = request({tile({0, 16})});
   PassMerger merger;
-  EXPECT_FALSE(merger.merge(plain).error_bound.has_value());
-  plain.bound_error = true;
-  EXPECT_TRUE(merger.merge(plain).error_bound.has_value());
-  EXPECT_FALSE(merger
-                   .merge([&] {
-                     plain.tiles.push_back(tile({16, 20}));
-                     return plain;
-                   }())
-                   .error_bound.has_value())
-      << "no look at 20";
+  EXPECT_FALSE(merger.merge(plain).look.has_value());
+  plain.decision = {{1e-6}, 1};
+  const std::optional<ErrorLook> look = merger.merge(plain).look;
+  ASSERT_TRUE(look.has_value());
+  ASSERT_TRUE(look->next.has_value());
+  EXPECT_EQ(look->next->samples, (SampleRange{16, 32}));
 }
 
 TEST_F(Merge, AnotherJobOrAFailureInBetweenReadsEverythingAgain) {

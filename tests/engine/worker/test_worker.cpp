@@ -11,6 +11,7 @@
 #include "support/sky.h"
 #include "worker/codec.h"
 #include "worker/frame_socket.h"
+#include "film/tile_grid.h"
 #include "worker/tile_runner.h"
 
 namespace fluxfarm::testing {

@@ -22,7 +22,7 @@ class PointOut(BaseModel):
     """One revision on the way to the goal."""
 
     seconds: float = Field(description="Time in RUNNING.")
-    spp: int
+    spp: float = Field(description="Samples per pixel, mean over the picture.")
     error: float | None = Field(description="Estimated relative error from the noise.")
 
 
@@ -73,7 +73,7 @@ async def report(job_id: JobId, farm: Farm) -> ReportOut:
         seconds=await _seconds_by_state(farm, record),
         # Path tracing has no bias of its own; energy that it never sampled is not audited, so that is left open.
         error={"noise": None if record.newest is None else record.newest.error_noise, "bias": 0.0, "unseen": None},
-        timeline=[PointOut(seconds=r.running_s, spp=r.min_samples, error=r.error_noise) for r in revisions],
+        timeline=[PointOut(seconds=r.running_s, spp=r.mean_samples, error=r.error_noise) for r in revisions],
         revisions=[revision_out(revision) for revision in revisions],
         plan=None if record.facts is None else record.facts.plan,
         warnings=list(record.warnings),

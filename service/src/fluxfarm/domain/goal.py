@@ -1,17 +1,21 @@
 """When a job has enough samples: by count, by time or by error.
 
-A sample goal fixes all passes in advance. The other two decide at pass barriers, from what the finished passes
-measured: a time goal from the clock, an error goal from the merged sums alone, so that the same job always stops at
-the same sample. The engine bounds the error with a confidence that it spends over the doublings of the samples.
+A sample goal fixes all passes in advance. A time goal decides before each pass, from the clock. An error goal is decided
+by the engine after each round of passes, from the merged sums alone, so that the same job always stops at the same
+samples: the engine bounds the error, with a confidence that it spends over the rounds, and names the tiles that need more.
 """
 
 from dataclasses import dataclass
 
-from fluxfarm.domain.schedule import SampleRange, next_range, pass_samples
+from fluxfarm.domain.schedule import Round, SampleRange, next_range
 
 DEFAULT_SPP = 64
 # An error goal that is never reached has to end somewhere.
 ERROR_GOAL_CEILING_SPP = 65_536
+# Samples of the first round of an error goal, and the side of its tiles in pixels: as in engine/src/film/error_goal.h.
+FIRST_ROUND_SPP = 16
+ERROR_TILE = 32
+UNBOUNDED_SPP = 1 << 31
 # A time goal stops when less than this share of the next sample would fit.
 LEAST_FITTING_SHARE = 0.5
 
@@ -35,11 +39,15 @@ class Limits:
 
 @dataclass(frozen=True, slots=True)
 class Measured:
-    """What is known at a pass barrier. `error_bound` holds with 95 % over a whole job; None if none is due."""
+    """What is known when a pass may begin.
 
-    passes: int
+    `round` is None once an error goal needs no further one. `spp` are the samples taken of each of its pixels, `sample_s`
+    the seconds that one more of each will take by the rate so far (0: unknown). `error_bound` is there at a decision."""
+
+    round: Round | None
     spp: int
     running_s: float
+    sample_s: float
     error_noise: float | None
     error_bound: float | None
 
@@ -60,7 +68,7 @@ def settled(goal: Goal, scene_spp: int) -> Goal:
 
 def has_barriers(goal: Goal, limits: Limits) -> bool:
     """Whether each pass has to be merged before the next one is chosen."""
-    return goal.spp is None or limits.seconds is not None
+    return goal.seconds is not None or limits.seconds is not None
 
 
 def ceiling_spp(goal: Goal, limits: Limits) -> int | None:
@@ -72,19 +80,22 @@ def ceiling_spp(goal: Goal, limits: Limits) -> int | None:
     return limits.spp
 
 
+def first_round(goal: Goal, limits: Limits) -> Round:
+    """The round with which a job begins; the only one unless it has an error goal. `goal` is settled."""
+    ceiling = ceiling_spp(goal, limits) or UNBOUNDED_SPP
+    end = ceiling if goal.rel_error is None else min(FIRST_ROUND_SPP, ceiling)
+    return Round(1, SampleRange(0, end))
+
+
 def next_pass(goal: Goal, limits: Limits, measured: Measured) -> SampleRange | Stop:
-    """The samples of the next pass, or Stop. `goal` is settled."""
-    if goal.rel_error is not None and measured.error_bound is not None and measured.error_bound <= goal.rel_error:
-        return Stop()
-    ceiling = ceiling_spp(goal, limits)
-    if ceiling is not None and measured.spp >= ceiling:
+    """The samples of the next pass of the round, or Stop. `goal` is settled."""
+    if measured.round is None or measured.spp >= measured.round.samples.end:
         return Stop(_unreached(goal, measured))
-    samples = next_range(measured.passes, measured.spp, ceiling or measured.spp + pass_samples(measured.passes))
-    assert samples is not None
+    samples = next_range(measured.spp, measured.round.samples.end)
     seconds = min((s for s in (goal.seconds, limits.seconds) if s is not None), default=None)
-    if seconds is None or measured.spp == 0:
+    if seconds is None or measured.sample_s <= 0:
         return samples
-    fitting = (seconds - measured.running_s) * measured.spp / max(measured.running_s, 1e-6)
+    fitting = (seconds - measured.running_s) / measured.sample_s
     if fitting < LEAST_FITTING_SHARE:
         return Stop(_unreached(goal, measured))
     return SampleRange(samples.begin, samples.begin + max(1, min(samples.count, int(fitting))))
@@ -93,9 +104,11 @@ def next_pass(goal: Goal, limits: Limits, measured: Measured) -> SampleRange | S
 def _unreached(goal: Goal, measured: Measured) -> str | None:
     """Why stopping now misses the goal, or None if it does not."""
     if goal.rel_error is not None:
+        if measured.error_bound is not None and measured.error_bound <= goal.rel_error:
+            return None
         error = "unknown" if measured.error_noise is None else f"{measured.error_noise:.4g}"
         return (
-            f"goal not reached with 95 % confidence: relative error is about {error} after {measured.spp} samples per "
+            f"goal not reached with 95 % confidence: relative error is about {error} after up to {measured.spp} samples per "
             f"pixel and {measured.running_s:.1f} s, expected at most {goal.rel_error:g}; raise the limits"
         )
     if goal.spp is not None and measured.spp < goal.spp:

@@ -5,7 +5,7 @@ from enum import StrEnum
 from pathlib import Path
 
 from fluxfarm.domain.records import SceneFacts
-from fluxfarm.domain.schedule import SampleRange
+from fluxfarm.domain.schedule import Round, SampleRange
 from fluxfarm.domain.tiles import PixelRect
 
 
@@ -59,6 +59,15 @@ class RenderLease(Lease):
 
 
 @dataclass(frozen=True, slots=True)
+class Decision:
+    """What an engine process needs to decide an error goal after the round `round`."""
+
+    rel_error: float
+    round: int
+    most_samples: int
+
+
+@dataclass(frozen=True, slots=True)
 class MergeLease(Lease):
     """Add finished tiles to the film and write the image, its preview and, where a path is given, the film."""
 
@@ -72,7 +81,7 @@ class MergeLease(Lease):
     png_out: Path
     info: ImageInfo
     passes: int
-    bound_error: bool
+    decision: Decision | None
 
 
 @dataclass(frozen=True, slots=True)
@@ -134,16 +143,19 @@ class TilesFinished:
 
 @dataclass(frozen=True, slots=True)
 class Merged:
-    """The files of the lease are written and closed, but not yet synced."""
+    """The files of the lease are written and closed, but not yet synced. The last three: as in Revision."""
 
     lease: MergeLease
     min_samples: int
     max_samples: int
+    mean_samples: float
     error_noise: float | None
-    error_bound: float | None
     mean: tuple[float, float, float]
     non_finite_samples: int
     seconds: float
+    error_bound: float | None
+    next_round: Round | None
+    samples_expected: float | None
 
 
 @dataclass(frozen=True, slots=True)

@@ -17,21 +17,31 @@ class Progress:
     eta_seconds: float | None
 
 
-def eta_seconds(goal: Goal, spp: float, running_s: float, error_now: float | None, ceiling: int | None) -> float | None:
+def eta_seconds(
+    goal: Goal,
+    spp: float,
+    running_s: float,
+    error_now: float | None,
+    ceiling: int | None,
+    expected_spp: float | None = None,
+) -> float | None:
     """Seconds until `goal` is reached at the rate so far, or None when that cannot be told yet.
 
-    `spp` are the samples per pixel taken so far (a mean over the frame), `ceiling` the most that will be taken. An
-    error goal assumes that the error falls with the square root of the samples.
+    `spp` are the samples per pixel taken so far (a mean over the frame), `ceiling` the most that will be taken. For an
+    error goal `expected_spp` is what its last decision expects; before the first, the error is taken to fall with the
+    square root of the samples.
     """
     if goal.seconds is not None:
         return max(0.0, goal.seconds - running_s)
     if spp <= 0 or running_s <= 0:
         return None
-    wanted = goal.spp
-    if goal.rel_error is not None:
+    wanted: float | None = goal.spp
+    if goal.rel_error is not None and expected_spp is not None:
+        wanted = expected_spp
+    elif goal.rel_error is not None:
         if error_now is None:
             return None
-        wanted = int(spp * (error_now / goal.rel_error) ** 2)
+        wanted = spp * (error_now / goal.rel_error) ** 2
     if wanted is None:
         return None
     if ceiling is not None:

@@ -6,7 +6,7 @@ from typing import Any
 from fluxfarm.domain.goal import Goal, Limits
 from fluxfarm.domain.job import JobState
 from fluxfarm.domain.scene import SceneBundle
-from fluxfarm.domain.schedule import SampleRange
+from fluxfarm.domain.schedule import Round, SampleRange
 from fluxfarm.domain.tiles import PixelRect, TileGrid
 
 
@@ -44,14 +44,15 @@ class SceneFacts:
 class Revision:
     """A published image. Digests name files of the job; `film` is None where none was written, or a newer one is.
 
-    `error_bound` is the bound that may end a job with an error goal; None where no decision is due."""
+    Where an error goal was decided, `error_bound` is the bound that may end the job, `next_round` what follows (None: no
+    tile may take more samples, or the goal is reached) and `samples_expected` the camera samples of the whole job."""
 
     number: int
     passes: int
     min_samples: int
     max_samples: int
+    mean_samples: float
     error_noise: float | None
-    error_bound: float | None
     mean: tuple[float, float, float]
     non_finite_samples: int
     running_s: float
@@ -60,6 +61,9 @@ class Revision:
     png: str
     film: str | None
     at: float
+    error_bound: float | None = None
+    next_round: Round | None = None
+    samples_expected: float | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -95,12 +99,23 @@ class StoredTile:
 
 
 @dataclass(frozen=True, slots=True)
-class Unmerged:
-    """What a restart needs of a job: samples per pixel in the newest revision, passes opened after it, the newest film
-    and the tiles that it does not contain, in the order of their passes."""
+class OpenedPass:
+    """A pass of some tiles (None: all)."""
 
-    merged_spp: int
-    passes: tuple[tuple[int, SampleRange], ...]
+    index: int
+    samples: SampleRange
+    tiles: tuple[int, ...] | None
+
+
+@dataclass(frozen=True, slots=True)
+class Unmerged:
+    """What a restart needs of a job: the newest revision that decided an error goal, the samples per pixel that its round
+    has come to (None: it has not begun), passes that no revision contains, the newest film and the tiles that it does not
+    contain, in the order of their passes."""
+
+    decision: Revision | None
+    round_spp: int | None
+    passes: tuple[OpenedPass, ...]
     film: str | None
     tiles: tuple[StoredTile, ...]
 

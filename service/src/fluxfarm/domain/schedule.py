@@ -24,26 +24,26 @@ class SampleRange:
         return self.end - self.begin
 
 
-def pass_samples(index: int) -> int:
-    """Samples per pixel of the pass `index` (0, 1, 2 ...) when nothing cuts it."""
-    if index <= 1:
-        return 1
-    return min(1 << min(index - 1, PASS_CEILING_SPP.bit_length()), PASS_CEILING_SPP)
+@dataclass(frozen=True, slots=True)
+class Round:
+    """Samples that some tiles (None: all) take before an error goal is decided again; `number` counts from 1."""
+
+    number: int
+    samples: SampleRange
+    tiles: tuple[int, ...] | None = None
 
 
-def next_range(index: int, samples_done: int, goal_spp: int) -> SampleRange | None:
-    """The samples of the pass `index` after `samples_done` per pixel, cut to `goal_spp`; None when all are taken."""
-    if samples_done >= goal_spp:
-        return None
-    return SampleRange(samples_done, min(samples_done + pass_samples(index), goal_spp))
+def next_range(done: int, end: int) -> SampleRange:
+    """The samples of the pass that follows when `done` < `end` per pixel are taken, up to `end`."""
+    return SampleRange(done, min(done + min(max(done, 1), PASS_CEILING_SPP), end))
 
 
 def passes(goal_spp: int) -> Iterator[SampleRange]:
     """All passes to `goal_spp` samples per pixel, in order."""
-    index, done = 0, 0
-    while (samples := next_range(index, done, goal_spp)) is not None:
-        yield samples
-        index, done = index + 1, samples.end
+    done = 0
+    while done < goal_spp:
+        yield (samples := next_range(done, goal_spp))
+        done = samples.end
 
 
 def pass_count(goal_spp: int) -> int:

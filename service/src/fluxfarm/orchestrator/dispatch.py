@@ -124,7 +124,7 @@ class Dispatcher:
     def _render_lease(self, run: JobRun, worker: WorkerInfo) -> Lease | None:
         opened = run.open_pass(time.monotonic())
         if opened is not None:
-            self._ledger.open_pass(run.id, opened.index, opened.samples)
+            self._ledger.open_pass(run.id, opened)
         lease = run.take_lease(self.next_fence, worker.threads, len(self._pool.workers()), self._lease_s)
         if lease is not None:
             self.new_fence()
@@ -150,7 +150,7 @@ class Dispatcher:
             png_out=self._blobs.scratch(run.id, f"{fence}.png"),
             info=ImageInfo(run.id, run.request.bundle.digest(), facts.integrator, run.request.seed),
             passes=ready[-1].index + 1,
-            bound_error=run.request.goal.rel_error is not None,
+            decision=run.decision(ready),
         )
 
 

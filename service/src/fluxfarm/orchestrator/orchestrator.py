@@ -13,6 +13,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TypeVar
 
+from fluxfarm.domain.goal import ERROR_TILE
 from fluxfarm.domain.job import TERMINAL_STATES, JobState
 from fluxfarm.domain.leases import (
     FailureKind,
@@ -342,7 +343,7 @@ class Orchestrator:
             )
         else:
             facts = replace(facts, crop=crop)
-            grid = TileGrid(crop, self._settings.tile_size)
+            grid = TileGrid(crop, self._settings.tile_size if request.goal.rel_error is None else ERROR_TILE)
             await self._ledger.record_facts(outcome.lease.fence, run.id, facts, grid)
             run.end_lease(outcome.lease.fence)
             run.start(facts, grid, None, time.monotonic())

@@ -27,8 +27,8 @@ async def publish(
         passes=lease.passes,
         min_samples=merged.min_samples,
         max_samples=merged.max_samples,
+        mean_samples=merged.mean_samples,
         error_noise=merged.error_noise,
-        error_bound=merged.error_bound,
         mean=merged.mean,
         non_finite_samples=merged.non_finite_samples,
         running_s=running_s,
@@ -37,6 +37,9 @@ async def publish(
         png=png,
         film=film,
         at=time.time(),
+        error_bound=merged.error_bound,
+        next_round=merged.next_round,
+        samples_expected=merged.samples_expected,
     )
     kept = {film_before} if before is None else {film_before, before.exr, before.png}
     try:

@@ -7,11 +7,11 @@ be rebuilt from the ledger.
 from collections import deque
 from dataclasses import dataclass, field
 
-from fluxfarm.domain.goal import Measured, Stop, has_barriers, next_pass, settled
+from fluxfarm.domain.goal import UNBOUNDED_SPP, Measured, Stop, ceiling_spp, first_round, has_barriers, next_pass, settled
 from fluxfarm.domain.job import JobState
-from fluxfarm.domain.leases import RenderLease, SceneRef
-from fluxfarm.domain.records import JobRecord, Revision, SceneFacts, Unmerged
-from fluxfarm.domain.schedule import SampleRange
+from fluxfarm.domain.leases import Decision, RenderLease, SceneRef
+from fluxfarm.domain.records import JobRecord, OpenedPass, Revision, SceneFacts, Unmerged
+from fluxfarm.domain.schedule import Round, SampleRange
 from fluxfarm.domain.tiles import TileGrid
 
 # Passes that may be under way at a time.
@@ -65,7 +65,11 @@ class JobRun:
         self._in_flight: dict[int, int] = {}
         self._opened = record.passes_opened
         self._merged_passes = 0 if record.newest is None else record.newest.passes
-        self._merged_spp = 0
+        # The round under way and the samples per pixel that its passes have come to; None when no more are needed.
+        self._round: Round | None = None
+        self._spp = 0
+        self._samples = record.samples_done
+        self.samples_expected: float | None = None
         # The newest film and, in the order of merging, the tiles of passes that are merged but not in it.
         self.film: str | None = None
         self.loose_tiles: tuple[str, ...] = ()
@@ -84,37 +88,43 @@ class JobRun:
         self.state = JobState.RUNNING
         self.facts, self._grid = facts, grid
         self._goal = settled(self.request.goal, facts.scene_spp)
+        self._round = first_round(self._goal, self.request.limits)
         self._running_since = now
         if unmerged is None:
             return
-        self._merged_spp, self.film = unmerged.merged_spp, unmerged.film
+        self.film = unmerged.film
         loose = [tile for tile in unmerged.tiles if tile.pass_index < self._merged_passes]
         self.loose_tiles = tuple(tile.sha256 for tile in loose)
         self._loose_passes = len({tile.pass_index for tile in loose})
-        for index, samples in unmerged.passes:
-            opened = PassRun(index, samples, deque())
-            opened.done = {tile.tile: tile.sha256 for tile in unmerged.tiles if tile.pass_index == index}
-            opened.pending.extend(tile for tile in grid.order() if tile not in opened.done)
-            self._passes[index] = opened
+        if unmerged.decision is not None:
+            self._begin_round(unmerged.decision)
+        self._spp = self._spp if unmerged.round_spp is None else unmerged.round_spp
+        for opened in unmerged.passes:
+            work = self._add_pass(opened)
+            work.done = {tile.tile: tile.sha256 for tile in unmerged.tiles if tile.pass_index == opened.index}
+            work.pending = deque(tile for tile in work.pending if tile not in work.done)
 
-    def open_pass(self, now: float) -> PassRun | None:
+    def open_pass(self, now: float) -> OpenedPass | None:
         """Open the next pass if its time has come; None if not, or if the job has its samples (see `warning`)."""
         if self._stop is not None or self._grid is None or any(p.pending for p in self._passes.values()):
+            return None
+        if self._is_decision_due:
             return None
         barriers = has_barriers(self._goal, self.request.limits)
         open_passes = len(self._passes) if barriers else sum(not p.complete for p in self._passes.values())
         if open_passes >= (1 if barriers else MOST_OPEN_PASSES):
             return None
-        spp = max((p.samples.end for p in self._passes.values()), default=self._merged_spp)
         error, bound = (None, None) if self._newest is None else (self._newest.error_noise, self._newest.error_bound)
-        measured = Measured(self._merged_passes + len(self._passes), spp, self.running_s(now), error, bound)
+        measured = Measured(self._round, self._spp, self.running_s(now), self._sample_s(now), error, bound)
         samples = next_pass(self._goal, self.request.limits, measured)
         if isinstance(samples, Stop):
             self._stop = samples
             return None
-        opened = PassRun(measured.passes, samples, deque(self._grid.order()))
-        self._passes[opened.index] = opened
+        assert self._round is not None
+        opened = OpenedPass(self._merged_passes + len(self._passes), samples, self._round.tiles)
+        self._add_pass(opened)
         self._opened = opened.index + 1
+        self._spp = samples.end
         return opened
 
     def take_lease(self, fence: int, threads: int, workers: int, target_s: float) -> RenderLease | None:
@@ -153,8 +163,10 @@ class JobRun:
         work = self._passes.get(pass_index)
         if fence not in self._leases or work is None or tile in work.done:
             return
+        assert self._grid is not None
         work.leased.discard(tile)
         work.done[tile] = sha256
+        self._samples += self._grid.rect(tile).area * work.samples.count
 
     def end_lease(self, fence: int) -> None:
         """The lease is over; its tiles that are not done become pending again, in front."""
@@ -178,13 +190,14 @@ class JobRun:
         self.single_lease = None
         for index in sorted(index for index in self._passes if index < revision.passes):
             merged = self._passes.pop(index)
-            self._merged_spp = merged.samples.end
             self._loose_passes += 1
             self.loose_tiles += merged.tiles()
         if revision.film is not None:
             self.film, self.loose_tiles, self._loose_passes = revision.film, (), 0
         self._merged_passes = revision.passes
         self._newest = revision
+        if revision.error_bound is not None:
+            self._begin_round(revision)
 
     # ---- questions ----
 
@@ -196,11 +209,21 @@ class JobRun:
         """Complete passes that come next in the film, oldest first; none while the newest revision is fresh, unless the
         job waits for them."""
         ready: list[PassRun] = []
-        if not self._is_last_merge and not has_barriers(self._goal, self.request.limits) and now < self._next_merge:
+        waited_for = self._is_last_merge or has_barriers(self._goal, self.request.limits)
+        waited_for = waited_for or (self._is_decision_due and self.all_passes_complete)
+        if not waited_for and now < self._next_merge:
             return ready
         while (work := self._passes.get(self._merged_passes + len(ready))) is not None and work.complete:
             ready.append(work)
         return ready
+
+    def decision(self, ready: list[PassRun]) -> Decision | None:
+        """What the engine has to decide after merging `ready`, if that ends a round towards an error goal."""
+        if not self._is_decision_due or len(ready) < len(self._passes):
+            return None
+        assert self._goal.rel_error is not None and self._round is not None
+        most = ceiling_spp(self._goal, self.request.limits) or UNBOUNDED_SPP
+        return Decision(self._goal.rel_error, self._round.number, most)
 
     def wants_film(self, ready: list[PassRun]) -> bool:
         """Whether the merge of `ready` should write a film."""
@@ -249,9 +272,43 @@ class JobRun:
             extra += max(0, samples - committed * lease.samples.count)
         return extra
 
+    def tiles_left(self) -> int:
+        """Tiles of the opened passes that are not committed."""
+        return sum(len(work.pending) + len(work.leased) for work in self._passes.values())
+
+    @property
+    def _is_decision_due(self) -> bool:
+        """Whether all passes of a round towards an error goal are opened, and none of the next one."""
+        return self._goal.rel_error is not None and self._round is not None and self._spp >= self._round.samples.end
+
     @property
     def _is_last_merge(self) -> bool:
         return self._stop is not None and self.all_passes_complete
+
+    def _begin_round(self, decision: Revision) -> None:
+        """An error goal was decided."""
+        self._round = decision.next_round
+        self.samples_expected = decision.samples_expected
+        if self._round is not None:
+            self._spp = self._round.samples.begin
+
+    def _add_pass(self, opened: OpenedPass) -> PassRun:
+        assert self._grid is not None
+        among = None if opened.tiles is None else frozenset(opened.tiles)
+        tiles = (tile for tile in self._grid.order() if among is None or tile in among)
+        work = self._passes[opened.index] = PassRun(opened.index, opened.samples, deque(tiles))
+        return work
+
+    def _sample_s(self, now: float) -> float:
+        """Seconds that one more sample of every pixel of the round takes, by the rate so far; 0 while unknown."""
+        assert self._grid is not None
+        if self._samples == 0 or self._round is None:
+            return 0.0
+        if self._round.tiles is None:
+            pixels = self._grid.crop.area
+        else:
+            pixels = sum(self._grid.rect(tile).area for tile in self._round.tiles)
+        return self.running_s(now) * pixels / self._samples
 
     def _lease_size(self, work: PassRun, threads: int, workers: int, target_s: float) -> int:
         """Number of tiles for one lease; small while the cost of a tile is unknown."""

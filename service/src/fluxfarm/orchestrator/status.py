@@ -17,10 +17,15 @@ def progress_of(record: JobRecord, run: JobRun | None, now: float) -> Progress:
     samples = record.samples_done + (0 if run is None else run.samples_in_flight())
     running_s = record.running_s if run is None else run.running_s(now)
     error = None if record.newest is None else record.newest.error_noise
-    passes = record.passes_opened
-    if goal.spp is not None and record.state not in TERMINAL_STATES:
-        passes = max(passes, pass_count(ceiling or goal.spp))
+    if goal.rel_error is not None:
+        tiles = record.tiles_done + (0 if run is None else run.tiles_left())
+    elif goal.spp is not None and record.state not in TERMINAL_STATES:
+        tiles = record.grid.count * max(record.passes_opened, pass_count(ceiling or goal.spp))
+    else:
+        tiles = record.grid.count * record.passes_opened
     eta = None
     if record.state in (JobState.RUNNING, JobState.FINALIZING):
-        eta = eta_seconds(goal, samples / record.grid.crop.area, running_s, error, ceiling)
-    return Progress(record.tiles_done, record.grid.count * passes, samples, record.passes_opened, error, eta)
+        pixels, expected = record.grid.crop.area, None if run is None else run.samples_expected
+        expected_spp = None if expected is None else expected / pixels
+        eta = eta_seconds(goal, samples / pixels, running_s, error, ceiling, expected_spp)
+    return Progress(record.tiles_done, tiles, samples, record.passes_opened, error, eta)

@@ -7,6 +7,7 @@ from pathlib import Path
 
 from fluxfarm.adapters.protocol import engine_pb2 as pb
 from fluxfarm.domain.leases import (
+    Decision,
     FailureKind,
     ImageInfo,
     Lease,
@@ -25,9 +26,10 @@ from fluxfarm.domain.leases import (
     WriteTileLease,
 )
 from fluxfarm.domain.records import SceneFacts
+from fluxfarm.domain.schedule import Round, SampleRange
 from fluxfarm.domain.tiles import PixelRect
 
-PROTOCOL_VERSION = 1
+PROTOCOL_VERSION = 2
 MAX_FRAME_BYTES = 64 << 20
 LENGTH = struct.Struct("<I")
 
@@ -130,11 +132,7 @@ def outcome(work: Lease, reply: Reply) -> tuple[Outcome, bool]:
     if isinstance(work, PrepareLease) and isinstance(body, pb.SceneLoaded):
         return Prepared(work, _facts(body)), True
     if isinstance(work, MergeLease) and isinstance(body, pb.PassMerged):
-        error = body.error_noise if body.HasField("error_noise") else None
-        bound = body.error_bound if body.HasField("error_bound") else None
-        mean = (body.mean_r, body.mean_g, body.mean_b)
-        samples, failed = (body.min_samples, body.max_samples), body.non_finite_samples
-        return Merged(work, *samples, error, bound, mean, failed, body.seconds), True
+        return _merged(work, body), True
     if isinstance(work, WriteTileLease) and isinstance(body, pb.TileWritten):
         return TileWritten(work), True
     raise ProtocolError(f"{type(body).__name__} does not answer a {type(work).__name__}")
@@ -182,7 +180,34 @@ def _merge_pass(work: MergeLease) -> pb.MergePass:
         exr_out=str(work.exr_out),
         png_out=str(work.png_out),
         info=_info(work.info),
-        bound_error=work.bound_error,
+        error_goal=_error_goal(work.decision),
+    )
+
+
+def _error_goal(decision: Decision | None) -> pb.ErrorGoal | None:
+    if decision is None:
+        return None
+    return pb.ErrorGoal(rel_error=decision.rel_error, round=decision.round, most_samples=decision.most_samples)
+
+
+def _merged(work: MergeLease, body: pb.PassMerged) -> Merged:
+    decided = work.decision is not None and body.HasField("error_bound")
+    following = None
+    if work.decision is not None and body.HasField("next_round"):
+        samples = SampleRange(body.next_round.samples.begin, body.next_round.samples.end)
+        following = Round(work.decision.round + 1, samples, tuple(body.next_round.tiles))
+    return Merged(
+        lease=work,
+        min_samples=body.min_samples,
+        max_samples=body.max_samples,
+        mean_samples=body.mean_samples,
+        error_noise=body.error_noise if body.HasField("error_noise") else None,
+        mean=(body.mean_r, body.mean_g, body.mean_b),
+        non_finite_samples=body.non_finite_samples,
+        seconds=body.seconds,
+        error_bound=body.error_bound if decided else None,
+        next_round=following,
+        samples_expected=body.samples_expected if decided else None,
     )
 
 

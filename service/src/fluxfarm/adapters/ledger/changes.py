@@ -25,8 +25,7 @@ from fluxfarm.adapters.ledger.schema import (
 )
 from fluxfarm.domain.events import EventKind
 from fluxfarm.domain.job import TERMINAL_STATES, JobState, check_transition
-from fluxfarm.domain.records import JobRequest, Revision, SceneFacts, TileCommit
-from fluxfarm.domain.schedule import SampleRange
+from fluxfarm.domain.records import JobRequest, OpenedPass, Revision, SceneFacts, TileCommit
 from fluxfarm.domain.tiles import TileGrid
 from fluxfarm.errors import Gone, IdempotencyConflict, IllegalTransition, JobNotFound, StaleLease
 
@@ -133,15 +132,17 @@ def grant(connection: Connection, fence: int, job_id: str) -> None:
         connection.execute(insert(leases).values(fence=fence, job_id=job_id))
 
 
-def open_pass(connection: Connection, job_id: str, index: int, samples: SampleRange) -> None:
+def open_pass(connection: Connection, job_id: str, opened: OpenedPass) -> None:
     """Record a pass; a pass that is there already stays as it is."""
     connection.execute(
         insert(passes)
         .prefix_with("OR IGNORE")
-        .values(job_id=job_id, pass_index=index, sample_begin=samples.begin, sample_end=samples.end)
+        .values(rows.pass_to_row(job_id, opened))
     )
     connection.execute(
-        update(jobs).where(jobs.c.id == job_id, jobs.c.passes_opened <= index).values(passes_opened=index + 1)
+        update(jobs)
+        .where(jobs.c.id == job_id, jobs.c.passes_opened <= opened.index)
+        .values(passes_opened=opened.index + 1)
     )
 
 

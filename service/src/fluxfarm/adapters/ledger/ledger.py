@@ -12,8 +12,16 @@ from fluxfarm.adapters.ledger.database import Database
 from fluxfarm.adapters.ledger.schema import events, jobs, passes, revisions, tiles
 from fluxfarm.domain.events import Event
 from fluxfarm.domain.job import JobState
-from fluxfarm.domain.records import JobRecord, JobRequest, Revision, SceneFacts, StoredTile, TileCommit, Unmerged
-from fluxfarm.domain.schedule import SampleRange
+from fluxfarm.domain.records import (
+    JobRecord,
+    JobRequest,
+    OpenedPass,
+    Revision,
+    SceneFacts,
+    StoredTile,
+    TileCommit,
+    Unmerged,
+)
 from fluxfarm.domain.tiles import TileGrid
 
 T = TypeVar("T")
@@ -45,8 +53,8 @@ class SqliteLedger:
     def grant(self, fence: int, job_id: str) -> None:
         self._post(changes.grant, fence, job_id)
 
-    def open_pass(self, job_id: str, index: int, samples: SampleRange) -> None:
-        self._post(changes.open_pass, job_id, index, samples)
+    def open_pass(self, job_id: str, opened: OpenedPass) -> None:
+        self._post(changes.open_pass, job_id, opened)
 
     async def commit_tiles(self, commits: Sequence[TileCommit], ended: Sequence[int]) -> list[bool]:
         return await self._write(changes.commit_tiles, commits, ended)
@@ -87,21 +95,27 @@ class SqliteLedger:
         def read(connection: Connection) -> Unmerged:
             newest = select(func.coalesce(func.max(revisions.c.passes), 0)).where(revisions.c.job_id == job_id)
             first = connection.execute(newest).scalar_one()
+            decided = connection.execute(
+                select(revisions)
+                .where(revisions.c.job_id == job_id, revisions.c.error_bound.is_not(None))
+                .order_by(revisions.c.number.desc())
+                .limit(1)
+            ).first()
+            decision = None if decided is None else rows.revision_from_row(decided)
+            since = 0 if decision is None else decision.passes
             opened = connection.execute(
                 select(passes)
-                .where(passes.c.job_id == job_id, passes.c.pass_index >= first)
+                .where(passes.c.job_id == job_id, passes.c.pass_index >= min(first, since))
                 .order_by(passes.c.pass_index)
-            )
+            ).all()
             film = select(revisions.c.film).where(revisions.c.job_id == job_id, revisions.c.film.is_not(None))
             stored = connection.execute(
                 select(tiles).where(tiles.c.job_id == job_id).order_by(tiles.c.pass_index, tiles.c.tile)
             )
-            merged_spp = select(func.coalesce(func.max(passes.c.sample_end), 0)).where(
-                passes.c.job_id == job_id, passes.c.pass_index < first
-            )
             return Unmerged(
-                connection.execute(merged_spp).scalar_one(),
-                tuple((row.pass_index, SampleRange(row.sample_begin, row.sample_end)) for row in opened),
+                decision,
+                max((row.sample_end for row in opened if row.pass_index >= since), default=None),
+                tuple(rows.pass_from_row(row) for row in opened if row.pass_index >= first),
                 connection.execute(film).scalar(),
                 tuple(StoredTile(row.pass_index, row.tile, row.sha256) for row in stored),
             )

@@ -9,8 +9,9 @@ from sqlalchemy import Row
 from fluxfarm.domain.events import Event, EventKind
 from fluxfarm.domain.goal import Goal, Limits
 from fluxfarm.domain.job import JobState
-from fluxfarm.domain.records import JobRecord, JobRequest, Revision, SceneFacts
+from fluxfarm.domain.records import JobRecord, JobRequest, OpenedPass, Revision, SceneFacts
 from fluxfarm.domain.scene import SceneBundle
+from fluxfarm.domain.schedule import Round, SampleRange
 from fluxfarm.domain.tiles import PixelRect, TileGrid
 
 
@@ -53,6 +54,7 @@ def revision_from_row(row: Row[Any]) -> Revision:
     raw = dict(row._mapping)
     del raw["job_id"]
     raw["mean"] = (raw.pop("mean_r"), raw.pop("mean_g"), raw.pop("mean_b"))
+    raw["next_round"] = None if raw["next_round"] is None else _round_from_json(raw["next_round"])
     return Revision(**raw)
 
 
@@ -60,7 +62,30 @@ def revision_to_row(job_id: str, revision: Revision) -> dict[str, Any]:
     """The inverse of `revision_from_row`."""
     raw = asdict(revision)
     raw["mean_r"], raw["mean_g"], raw["mean_b"] = raw.pop("mean")
+    raw["next_round"] = None if raw["next_round"] is None else to_json(raw["next_round"])
     return raw | {"job_id": job_id}
+
+
+def _round_from_json(text: str) -> Round:
+    raw = json.loads(text)
+    return Round(raw["number"], SampleRange(**raw["samples"]), None if raw["tiles"] is None else tuple(raw["tiles"]))
+
+
+def pass_from_row(row: Row[Any]) -> OpenedPass:
+    """A row of `passes`."""
+    tiles = None if row.tiles is None else tuple(json.loads(row.tiles))
+    return OpenedPass(row.pass_index, SampleRange(row.sample_begin, row.sample_end), tiles)
+
+
+def pass_to_row(job_id: str, opened: OpenedPass) -> dict[str, Any]:
+    """The inverse of `pass_from_row`."""
+    return {
+        "job_id": job_id,
+        "pass_index": opened.index,
+        "sample_begin": opened.samples.begin,
+        "sample_end": opened.samples.end,
+        "tiles": None if opened.tiles is None else to_json(opened.tiles),
+    }
 
 
 def event_from_row(row: Row[Any]) -> Event:

@@ -85,6 +85,22 @@ MIGRATIONS: tuple[str, ...] = (
     """
     ALTER TABLE revisions ADD COLUMN error_bound REAL
     """,
+    """
+    ALTER TABLE passes ADD COLUMN tiles TEXT;
+    ALTER TABLE revisions ADD COLUMN mean_samples REAL NOT NULL DEFAULT 0;
+    UPDATE revisions SET mean_samples = min_samples;
+    ALTER TABLE revisions ADD COLUMN next_round TEXT;
+    ALTER TABLE revisions ADD COLUMN samples_expected REAL;
+    -- Unfinished jobs with an error goal were cut into other tiles: they begin anew.
+    CREATE TEMP TABLE renewed AS SELECT id FROM jobs
+        WHERE json_extract(request, '$.goal.rel_error') IS NOT NULL AND state NOT IN ('SUCCEEDED', 'FAILED', 'CANCELLED');
+    DELETE FROM tiles WHERE job_id IN (SELECT id FROM renewed);
+    DELETE FROM passes WHERE job_id IN (SELECT id FROM renewed);
+    DELETE FROM revisions WHERE job_id IN (SELECT id FROM renewed);
+    UPDATE jobs SET state = iif(state = 'PAUSED', state, 'QUEUED'), facts = NULL, tile_size = NULL, tiles_done = 0,
+        samples_done = 0, rays = 0, non_finite_samples = 0, passes_opened = 0 WHERE id IN (SELECT id FROM renewed);
+    DROP TABLE renewed
+    """,
 )
 
 metadata = MetaData()
@@ -109,13 +125,13 @@ jobs = _table(
 deleted_jobs = _table("deleted_jobs", "id", "id", "", "deleted_at")
 idempotency_keys = _table("idempotency_keys", "key", "key body_sha256 job_id", "", "created_at")
 leases = _table("leases", "fence", "job_id", "fence")
-passes = _table("passes", "job_id pass_index", "job_id", "pass_index sample_begin sample_end")
+passes = _table("passes", "job_id pass_index", "job_id tiles", "pass_index sample_begin sample_end")
 tiles = _table("tiles", "job_id pass_index tile", "job_id sha256", "pass_index tile")
 revisions = _table(
     "revisions",
     "job_id number",
-    "job_id exr png film",
+    "job_id exr png film next_round",
     "number passes min_samples max_samples non_finite_samples exr_bytes",
-    "error_noise error_bound mean_r mean_g mean_b running_s at",
+    "mean_samples samples_expected error_noise error_bound mean_r mean_g mean_b running_s at",
 )
 events = _table("events", "job_id seq", "job_id kind data", "seq", "at")

@@ -1,0 +1,49 @@
+// A goal of relative error, decided from the sums alone: which tiles take more samples, and when the picture is done.
+//
+// Samples are taken in rounds. The first takes kFirstRound samples of every pixel; each later one doubles those of some tiles.
+// After a round comes one look:
+// - The picture is done when the upper bound of its error (film/error_bound.h) is at or below the goal.
+// - Otherwise tiles are open whose own mean share of relMSE is above kOpenAbove goal^2: finished tiles leave their time to the
+//   others. Where few cells carry the error of a neighbourhood of 3 x 3 tiles, its variance per sample stands in for the tile's own
+//   if that is smaller: rare events strike neighbours alike, and the tile may not have seen its own yet.
+// - Of the open tiles those with the fewest samples make up the next round.
+// Every tile's decision is a function of the sums after a whole round, so it depends on no order, machine or clock.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "film/film.h"
+#include "film/pixel_rect.h"
+
+namespace fluxfarm {
+
+// Side of the tiles of a picture with an error goal, in pixels: part of what makes its pixels reproducible.
+inline constexpr int kErrorTile = 32;
+// Two samples in each replicate: with fewer, their spread says too little.
+inline constexpr std::uint32_t kFirstRound = 16;
+
+struct ErrorGoal {
+  double rel_error = 0;                      // sqrt(relMSE)
+  std::uint32_t most_samples = 0xffffffffu;  // per pixel
+};
+
+// Samples that certain tiles take, counted in rows over the crop of the film.
+struct Round {
+  SampleRange samples;
+  std::vector<std::uint32_t> tiles;  // rising
+};
+
+Round first_round(const ErrorGoal& goal, PixelRect crop);
+
+struct ErrorLook {
+  double bound = 0;           // of sqrt(relMSE), with 95 % confidence over all looks; infinite below two samples
+  std::optional<Round> next;  // nothing: done, or no tile may take more samples
+  double samples = 0;         // camera samples of the whole picture when it will be done, if variances fall as 1 / samples
+};
+
+// The decision after round `number` (1, 2, ...).
+ErrorLook look_at(const Film& film, const ErrorGoal& goal, int number);
+
+}  // namespace fluxfarm
