@@ -20,9 +20,8 @@ constexpr int kCell = 4;
 
 // Below so many pixels that carry the error of a neighbourhood, a tile's own error may be that of a lucky one (a choice).
 constexpr double kFewCarriers = 64;
-// So many standard errors make a pixel differ from those around it: with fewer, chance biases the error by more than a percent of
-// itself, with more, the edges of lamps hold up the picture.
-constexpr double kDistinct = 2;
+// So many standard errors make a pixel differ clearly (a choice: with two, chance biases the error of an even picture).
+constexpr double kDistinct = 3;
 
 struct TileError {
   double pixels = 0;
@@ -67,23 +66,41 @@ class ErrorShares {
     return estimates_[static_cast<std::size_t>(y - crop_.y) * crop_.width + (x - crop_.x)];
   }
 
-  // R of one channel: the median over 3 x 3 pixels, unless the pixel is clearly darker, or clearly brighter with a neighbour that
-  // is bright in most of its replicates, as at the edge of a lamp.
+  // R of one channel: the median over 3 x 3 pixels, unless the pixel is clearly darker, or brighter with a clearly bright one among
+  // them, such as a lamp of which it shows the edge.
   double likely_value(int x, int y, int channel) const {
     const PixelEstimate& pixel = estimate(x, y);
+    const PixelRect near = clipped(PixelRect{x - 1, y - 1, 3, 3});
     std::array<double, 9> means;
     std::size_t count = 0;
-    double bright = 0;
-    for (int v = std::max(y - 1, crop_.y); v <= std::min(y + 1, crop_.y + crop_.height - 1); ++v) {
-      for (int u = std::max(x - 1, crop_.x); u <= std::min(x + 1, crop_.x + crop_.width - 1); ++u) {
-        means[count++] = estimate(u, v).mean[channel];
-        bright = std::max(bright, estimate(u, v).median[channel]);
-      }
+    for (int v = near.y; v < near.y + near.height; ++v) {
+      for (int u = near.x; u < near.x + near.width; ++u) means[count++] = estimate(u, v).mean[channel];
     }
     std::nth_element(means.begin(), means.begin() + count / 2, means.begin() + count);
-    const double around = means[count / 2], mean = pixel.mean[channel], candidate = std::min(mean, bright);
-    const double distinct = kDistinct * std::sqrt(pixel.variance[channel]);
-    return around - mean > distinct ? mean : candidate - around > distinct ? candidate : around;
+    const double around = means[count / 2], mean = pixel.mean[channel];
+    if (mean <= around) return differ(pixel.variance[channel], around, mean) ? mean : around;
+    double value = around;
+    for (int v = near.y; v < near.y + near.height; ++v) {
+      for (int u = near.x; u < near.x + near.width; ++u) {
+        // One bright sample does not move the median of the replicates.
+        const PixelEstimate& other = estimate(u, v);
+        if (differ(other.variance[channel], other.median[channel], around)) {
+          value = std::max(value, std::min(mean, other.median[channel]));
+        }
+      }
+    }
+    return value;
+  }
+
+  static bool differ(double variance, double larger, double smaller) {
+    return larger > smaller && (larger - smaller) * (larger - smaller) > kDistinct * kDistinct * variance;
+  }
+
+  PixelRect clipped(PixelRect rect) const {
+    const int left = std::max(rect.x, crop_.x), top = std::max(rect.y, crop_.y);
+    const int right = std::min(rect.x + rect.width, crop_.x + crop_.width);
+    const int bottom = std::min(rect.y + rect.height, crop_.y + crop_.height);
+    return {left, top, right - left, bottom - top};
   }
 
   PixelRect crop_;
