@@ -37,19 +37,19 @@ struct KnownPlugin {
 };
 
 constexpr KnownPlugin kKnownPlugins[] = {
-    {"scene", PluginKind::kScene},          {"path", PluginKind::kIntegrator},     {"perspective", PluginKind::kSensor},
-    {"independent", PluginKind::kSampler},  {"stratified", PluginKind::kSampler},  {"multijitter", PluginKind::kSampler},
-    {"orthogonal", PluginKind::kSampler},   {"ldsampler", PluginKind::kSampler},   {"halton", PluginKind::kSampler},
-    {"sobol", PluginKind::kSampler},        {"hdrfilm", PluginKind::kFilm},        {"box", PluginKind::kFilter},
-    {"tent", PluginKind::kFilter},          {"gaussian", PluginKind::kFilter},     {"diffuse", PluginKind::kBsdf},
-    {"twosided", PluginKind::kBsdf},        {"dielectric", PluginKind::kBsdf},     {"roughdielectric", PluginKind::kBsdf},
-    {"conductor", PluginKind::kBsdf},       {"roughconductor", PluginKind::kBsdf}, {"plastic", PluginKind::kBsdf},
-    {"roughplastic", PluginKind::kBsdf},    {"obj", PluginKind::kShape},           {"ply", PluginKind::kShape},
-    {"rectangle", PluginKind::kShape},      {"cube", PluginKind::kShape},          {"sphere", PluginKind::kShape},
-    {"disk", PluginKind::kShape},           {"area", PluginKind::kEmitter},        {"point", PluginKind::kEmitter},
-    {"spot", PluginKind::kEmitter},         {"directional", PluginKind::kEmitter}, {"constant", PluginKind::kEmitter},
-    {"envmap", PluginKind::kEmitter},       {"thinlens", PluginKind::kSensor},     {"bitmap", PluginKind::kTexture},
-    {"checkerboard", PluginKind::kTexture},
+    {"scene", PluginKind::kScene},         {"path", PluginKind::kIntegrator},      {"perspective", PluginKind::kSensor},
+    {"independent", PluginKind::kSampler}, {"stratified", PluginKind::kSampler},   {"multijitter", PluginKind::kSampler},
+    {"orthogonal", PluginKind::kSampler},  {"ldsampler", PluginKind::kSampler},    {"halton", PluginKind::kSampler},
+    {"sobol", PluginKind::kSampler},       {"hdrfilm", PluginKind::kFilm},         {"box", PluginKind::kFilter},
+    {"tent", PluginKind::kFilter},         {"gaussian", PluginKind::kFilter},      {"diffuse", PluginKind::kBsdf},
+    {"twosided", PluginKind::kBsdf},       {"dielectric", PluginKind::kBsdf},      {"roughdielectric", PluginKind::kBsdf},
+    {"conductor", PluginKind::kBsdf},      {"roughconductor", PluginKind::kBsdf},  {"plastic", PluginKind::kBsdf},
+    {"roughplastic", PluginKind::kBsdf},   {"principled", PluginKind::kBsdf},      {"obj", PluginKind::kShape},
+    {"ply", PluginKind::kShape},           {"rectangle", PluginKind::kShape},      {"cube", PluginKind::kShape},
+    {"sphere", PluginKind::kShape},        {"disk", PluginKind::kShape},           {"area", PluginKind::kEmitter},
+    {"point", PluginKind::kEmitter},       {"spot", PluginKind::kEmitter},         {"directional", PluginKind::kEmitter},
+    {"constant", PluginKind::kEmitter},    {"envmap", PluginKind::kEmitter},       {"thinlens", PluginKind::kSensor},
+    {"bitmap", PluginKind::kTexture},      {"checkerboard", PluginKind::kTexture},
 };
 
 std::string known_types(PluginKind kind) {

@@ -4,37 +4,14 @@
 #include <cmath>
 
 #include "io/conductor_presets.h"
-#include "io/named_ior.h"
+#include "io/material_parameters.h"
 #include "io/properties.h"
+#include "io/read_principled.h"
 #include "io/text.h"
 #include "support/error.h"
 
 namespace fluxfarm {
 namespace {
-
-// An index of refraction given as a number or by the name of a material.
-float read_ior(Properties& properties, const std::string& name, const char* default_name) {
-  const PropertyValue* value = properties.raw(name);
-  const std::string* text = value ? std::get_if<std::string>(value) : nullptr;
-  if (value && !text) return properties.number(name, 1, kPositive);
-  const std::optional<float> ior = named_ior(text ? *text : default_name);
-  if (!ior) properties.fail(name, "expected a number greater than 0 or one of: " + joined(ior_names()));
-  return *ior;
-}
-
-float read_relative_ior(Properties& properties, const char* default_interior) {
-  const float interior = read_ior(properties, "int_ior", default_interior);
-  return interior / read_ior(properties, "ext_ior", "air");
-}
-
-// A colour that may be a texture: then its constant factor is 1 and `texture` its index.
-Rgb read_colour(Properties& properties, TextureReader& textures, const std::string& name, Rgb otherwise, int& texture) {
-  if (const PluginNode* node = properties.texture(name)) {
-    texture = textures.read(*node);
-    return Rgb(1);
-  }
-  return properties.rgb(name, otherwise, kUnitInterval);
-}
 
 DielectricDescription read_dielectric(Properties& properties, TextureReader& textures) {
   DielectricDescription result;
@@ -132,6 +109,8 @@ MaterialDescription read_simple(const PluginNode& node, TextureReader& textures)
     result = read_conductor(properties, textures);
   } else if (node.type == "roughconductor") {
     result = read_rough_conductor(properties, textures);
+  } else if (node.type == "principled") {
+    result = read_principled(properties, textures);
   } else if (node.type == "plastic") {
     result = read_plastic(properties, textures);
   } else {
@@ -143,6 +122,7 @@ MaterialDescription read_simple(const PluginNode& node, TextureReader& textures)
 }
 
 bool transmits(const MaterialDescription& material) {
+  if (const auto* principled = std::get_if<PrincipledDescription>(&material)) return principled->spec_trans.factor > 0;
   return std::holds_alternative<DielectricDescription>(material) || std::holds_alternative<RoughDielectricDescription>(material);
 }
 

@@ -51,10 +51,21 @@ struct Maker {
   Result operator()(const RoughPlasticDescription& d) const {
     return has_texture(d.plastic) ? make_textured_rough_plastic(d, textures) : nullptr;
   }
+  Result operator()(const PrincipledDescription& d) const {
+    return has_texture(d) ? make_textured_principled(d, textures) : nullptr;
+  }
   Result operator()(const TwosidedDescription&) const { return nullptr; }
 
   TintedDescription tinted_dielectric(const DielectricDescription& d) const {
     return {&base, texture_of(textures, d.specular_reflectance_texture), texture_of(textures, d.specular_transmittance_texture)};
+  }
+  static bool has_texture(const PrincipledDescription& d) {
+    if (d.base_color_texture != kNoTexture) return true;
+    for (const ScalarParameter* p : {&d.roughness, &d.anisotropic, &d.metallic, &d.spec_trans, &d.spec_tint, &d.sheen,
+                                     &d.sheen_tint, &d.flatness, &d.clearcoat, &d.clearcoat_gloss}) {
+      if (p->texture != kNoTexture) return true;
+    }
+    return false;
   }
   static bool has_texture(const PlasticDescription& d) {
     return d.diffuse_reflectance_texture != kNoTexture || d.specular_reflectance_texture != kNoTexture;

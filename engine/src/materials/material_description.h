@@ -68,14 +68,29 @@ struct RoughPlasticDescription {
   Roughness roughness;  // isotropic: alpha_u = alpha_v
 };
 
+// A number that may vary over the surface: the luminance of the texture, if there is one, times the factor.
+struct ScalarParameter {
+  float factor = 0;
+  int texture = kNoTexture;
+};
+
+// Burley's principled material. All numbers in [0, 1] but eta, which is positive.
+struct PrincipledDescription {
+  Rgb base_color{0.5f};
+  int base_color_texture = kNoTexture;
+  ScalarParameter roughness{0.5f};  // its square is the alpha of the microfacets
+  ScalarParameter anisotropic, metallic, spec_trans, spec_tint, sheen, sheen_tint, flatness, clearcoat, clearcoat_gloss;
+  float eta = 1.5f;  // interior over exterior index of refraction
+};
+
 // Front and back are indices into the same list of materials; neither may transmit light.
 struct TwosidedDescription {
   int front = 0;
   int back = 0;
 };
 
-using MaterialDescription =
-    std::variant<DiffuseDescription, DielectricDescription, ConductorDescription, RoughConductorDescription,
-                 RoughDielectricDescription, PlasticDescription, RoughPlasticDescription, TwosidedDescription>;
+using MaterialDescription = std::variant<DiffuseDescription, DielectricDescription, ConductorDescription, RoughConductorDescription,
+                                         RoughDielectricDescription, PlasticDescription, RoughPlasticDescription,
+                                         PrincipledDescription, TwosidedDescription>;
 
 }  // namespace fluxfarm

@@ -12,6 +12,7 @@ bool is_anisotropic(const std::vector<MaterialDescription>& materials, const Mat
   const auto differs = [](const Roughness& r) { return r.alpha_u != r.alpha_v; };
   if (const auto* conductor = std::get_if<RoughConductorDescription>(&material)) return differs(conductor->roughness);
   if (const auto* dielectric = std::get_if<RoughDielectricDescription>(&material)) return differs(dielectric->roughness);
+  if (const auto* principled = std::get_if<PrincipledDescription>(&material)) return principled->anisotropic.factor > 0;
   if (const auto* twosided = std::get_if<TwosidedDescription>(&material)) {
     return is_anisotropic(materials, materials[twosided->front]) || is_anisotropic(materials, materials[twosided->back]);
   }

@@ -85,6 +85,15 @@ class Describer {
     write(m.plastic);
     write(m.roughness);
   }
+  void write(const PrincipledDescription& m) {
+    write("principled", m.base_color);
+    out_ << m.eta << " " << m.base_color_texture;
+    for (const ScalarParameter& p : {m.roughness, m.anisotropic, m.metallic, m.spec_trans, m.spec_tint, m.sheen, m.sheen_tint,
+                                     m.flatness, m.clearcoat, m.clearcoat_gloss}) {
+      out_ << " " << p.factor << " " << p.texture;
+    }
+    out_ << "\n";
+  }
   void write(const TwosidedDescription& m) { out_ << "twosided " << m.front << " " << m.back << "\n"; }
   void write(const MeshDescription& mesh) {
     for (const Vec3f p : mesh.positions) write("v", p);
