@@ -100,6 +100,10 @@ MaterialDescription read_simple(const PluginNode& node, TextureReader& textures)
     result = diffuse;
   } else if (node.type == "dielectric") {
     result = read_dielectric(properties, textures);
+  } else if (node.type == "thindielectric") {
+    result = ThinDielectricDescription{read_dielectric(properties, textures)};
+  } else if (node.type == "null") {
+    result = NullDescription{};
   } else if (node.type == "roughdielectric") {
     const DielectricDescription dielectric = read_dielectric(properties, textures);
     if (dielectric.eta == 1)
@@ -121,11 +125,6 @@ MaterialDescription read_simple(const PluginNode& node, TextureReader& textures)
   return result;
 }
 
-bool transmits(const MaterialDescription& material) {
-  if (const auto* principled = std::get_if<PrincipledDescription>(&material)) return principled->spec_trans.factor > 0;
-  return std::holds_alternative<DielectricDescription>(material) || std::holds_alternative<RoughDielectricDescription>(material);
-}
-
 }  // namespace
 
 int MaterialReader::read(const PluginNode& bsdf_or_reference) {
@@ -134,35 +133,25 @@ int MaterialReader::read(const PluginNode& bsdf_or_reference) {
                                : bsdf_or_reference;
   if (const auto known = indices_.find(&node); known != indices_.end()) return known->second;
   if (!being_read_.insert(&node).second) throw SceneError(bsdf_or_reference.place, title(node) + " contains itself");
-  const MaterialDescription material = node.type == "twosided" ? read_twosided(node) : read_simple(node, textures_);
+  const MaterialDescription material = read_any(node);
   being_read_.erase(&node);
   materials_.push_back(material);
   return indices_[&node] = static_cast<int>(materials_.size()) - 1;
+}
+
+MaterialDescription MaterialReader::read_any(const PluginNode& node) {
+  if (node.type == "twosided") return read_twosided(node);
+  if (node.type == "mask") return read_mask(node);
+  if (node.type == "blendbsdf") return read_blend(node);
+  if (node.type == "normalmap") return read_normal_map(node);
+  if (node.type == "bumpmap") return read_bump_map(node);
+  return read_simple(node, textures_);
 }
 
 int MaterialReader::diffuse(float reflectance) {
   const auto [found, is_new] = greys_.emplace(reflectance, static_cast<int>(materials_.size()));
   if (is_new) materials_.push_back(DiffuseDescription{Rgb(reflectance)});
   return found->second;
-}
-
-MaterialDescription MaterialReader::read_twosided(const PluginNode& node) {
-  Properties(node).finish();
-  std::vector<int> sides;
-  for (const PluginNode& child : node.children) {
-    if (child.kind != PluginKind::kBsdf && child.kind != PluginKind::kReference) fail_nested(node, child, "one or two bsdfs");
-    int side = read(child);
-    const MaterialDescription& material = materials_[static_cast<std::size_t>(side)];
-    if (transmits(material))
-      throw SceneError(child.place, title(node) + " holds a material that transmits light, expected an opaque one");
-    // A twosided within a twosided is only ever seen from its front.
-    if (const auto* inner = std::get_if<TwosidedDescription>(&material)) side = inner->front;
-    sides.push_back(side);
-  }
-  if (sides.empty() || sides.size() > 2) {
-    throw SceneError(node.place, title(node) + " holds " + std::to_string(sides.size()) + " bsdfs, expected one or two");
-  }
-  return TwosidedDescription{sides.front(), sides.back()};
 }
 
 }  // namespace fluxfarm

@@ -89,8 +89,45 @@ struct TwosidedDescription {
   int back = 0;
 };
 
+// A pane: a dielectric on both sides of nothing.
+struct ThinDielectricDescription {
+  DielectricDescription dielectric;
+};
+
+// Passes everything.
+struct NullDescription {};
+
+// The materials that these hold are indices into the same list.
+
+// `opacity` in [0, 1] is covered by the material; the rest passes.
+struct MaskDescription {
+  int material = 0;
+  ScalarParameter opacity{0.5f};
+};
+
+// (1 - weight) of the first, weight of the second.
+struct BlendDescription {
+  int first = 0;
+  int second = 0;
+  ScalarParameter weight{0.5f};
+};
+
+// Normals are 2 rgb - 1, in the frame of the surface.
+struct NormalMapDescription {
+  int material = 0;
+  int normals_texture = 0;
+};
+
+// Height is scale times the luminance of the texture, m.
+struct BumpMapDescription {
+  int material = 0;
+  int height_texture = 0;
+  float scale = 1;
+};
+
 using MaterialDescription = std::variant<DiffuseDescription, DielectricDescription, ConductorDescription, RoughConductorDescription,
                                          RoughDielectricDescription, PlasticDescription, RoughPlasticDescription,
-                                         PrincipledDescription, TwosidedDescription>;
+                                         PrincipledDescription, TwosidedDescription, ThinDielectricDescription, NullDescription,
+                                         MaskDescription, BlendDescription, NormalMapDescription, BumpMapDescription>;
 
 }  // namespace fluxfarm

@@ -239,10 +239,10 @@ class TexturedPrincipled final : public TexturedMaterial {
     }
   }
 
-  const Bsdf& at(Vec2f uv, BsdfSpace& space) const override {
+  const Bsdf& add_to(BsdfSpace& space, const MaterialPoint& point) const override {
     PrincipledParameters p = constant_;
-    p.base_color = colour_at(p.base_color, colour_, uv);
-    for (const Scalar& scalar : scalars_) p.*scalar.member *= luminance(scalar.texture->value(uv));
+    p.base_color = colour_at(p.base_color, colour_, point.texture);
+    for (const Scalar& scalar : scalars_) p.*scalar.member *= luminance(scalar.texture->value(point.texture));
     return space.make<PrincipledAtHit>(p, transmits_);
   }
 

@@ -94,11 +94,23 @@ class Describer {
     }
     out_ << "\n";
   }
+  void write(const ThinDielectricDescription& m) { write(m.dielectric); }
+  void write(const NullDescription&) { out_ << "null\n"; }
+  void write(const MaskDescription& m) {
+    out_ << "mask " << m.material << " " << m.opacity.factor << " " << m.opacity.texture << "\n";
+  }
+  void write(const BlendDescription& m) {
+    out_ << "blend " << m.first << " " << m.second << " " << m.weight.factor << " " << m.weight.texture << "\n";
+  }
+  void write(const NormalMapDescription& m) { out_ << "normals " << m.material << " " << m.normals_texture << "\n"; }
+  void write(const BumpMapDescription& m) { out_ << "bumps " << m.material << " " << m.height_texture << " " << m.scale << "\n"; }
+  void write(const MeshAttributeDescription& t) { out_ << "vertex_color " << t.scale << "\n"; }
   void write(const TwosidedDescription& m) { out_ << "twosided " << m.front << " " << m.back << "\n"; }
   void write(const MeshDescription& mesh) {
     for (const Vec3f p : mesh.positions) write("v", p);
     for (const Vec3f n : mesh.normals) write("n", n);
     for (const Vec2f uv : mesh.uvs) out_ << "uv " << uv.x << " " << uv.y << "\n";
+    for (const Rgb c : mesh.colors) write("c", c);
     for (const std::uint32_t i : mesh.indices) out_ << i << " ";
     out_ << "\n";
   }

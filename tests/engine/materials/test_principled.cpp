@@ -229,7 +229,7 @@ TEST(Principled, ParametersMayBeTextures) {
   };
   BsdfSpace space;
   for (const bool left : {true, false}) {
-    const Bsdf& there = materials.at(0)->at({left ? 0.1f : 0.9f, 0.1f}, space);
+    const Bsdf& there = materials.at(0)->at({.texture = {.uv = {left ? 0.1f : 0.9f, 0.1f}}}, space);
     const auto constant = left ? expected({0.8f, 0.4f, 0.1f}, 0.3f, 1) : expected({0.1f, 0.4f, 0.9f}, 0.7f, 0);
     const Vec3f wo = direction(0.7f, 0.2f), wi = direction(0.6f, 3.0f);
     EXPECT_NEAR(there.value(wo, wi).f.r, constant->value(wo, wi).f.r, 1e-5);
