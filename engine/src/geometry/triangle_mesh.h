@@ -16,7 +16,7 @@ class TriangleMesh final : public Shape {
     std::vector<Vec3f> normals;          // per vertex, unit; or empty: flat
     std::vector<Vec2f> uvs;              // per vertex; or empty
     std::vector<std::uint32_t> indices;  // three per triangle, counter-clockwise seen from the front
-    std::vector<Rgb> colors;             // per vertex; or empty
+    std::vector<Rgb> colors{};           // per vertex; or empty
   };
   // `flipped` swaps front and back. `emissive` builds the tables that sample() and pdf() need.
   TriangleMesh(Data data, bool flipped, bool emissive);
