@@ -27,6 +27,12 @@ Vec2f Disk::uv(const SurfacePoint& point, const Hit&) const {
   return {length(d) / radius_, turn_fraction(turn_ * dot(d, bitangent_), dot(d, tangent_))};
 }
 
+Shape::UvDerivatives Disk::uv_derivatives(const SurfacePoint& point, const Hit& hit) const {
+  // Outwards along the radius, and once around.
+  const Vec3f around = cross(normal_, point.position - center_) * (turn_ * kTwoPi);
+  return {tangent(point, hit) * radius_, around};
+}
+
 std::optional<ShapeSample> Disk::sample(Vec3f reference, Vec2f u) const {
   const float r = radius_ * std::sqrt(u.x);
   const float phi = kTwoPi * u.y;

@@ -15,6 +15,7 @@ class Disk final : public Shape {
   SurfacePoint surface_point(const Ray& ray, const Hit& hit) const override;
   Vec3f tangent(const SurfacePoint& point, const Hit& hit) const override;
   // u is the distance from the centre over the radius, v the angle over 2 pi.
+  UvDerivatives uv_derivatives(const SurfacePoint& point, const Hit& hit) const override;
   Vec2f uv(const SurfacePoint& point, const Hit& hit) const override;
   std::optional<ShapeSample> sample(Vec3f reference, Vec2f u) const override;
   float pdf(Vec3f reference, const SurfacePoint& point, std::uint32_t primitive, Vec3f wi, float distance) const override;

@@ -30,6 +30,8 @@ SurfacePoint Rectangle::surface_point(const Ray&, const Hit& hit) const {
 
 Vec2f Rectangle::uv(const SurfacePoint&, const Hit& hit) const { return place(hit); }
 
+Shape::UvDerivatives Rectangle::uv_derivatives(const SurfacePoint&, const Hit&) const { return {edge_u_, edge_v_}; }
+
 bool Rectangle::samples_solid_angle(Vec3f reference) const {
   return right_angled_ && looks_large(area_, corner_ + 0.5f * (edge_u_ + edge_v_), normal_, reference);
 }

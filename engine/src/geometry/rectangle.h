@@ -14,6 +14,7 @@ class Rectangle final : public Shape {
   SurfacePoint surface_point(const Ray& ray, const Hit& hit) const override;
   Vec3f tangent(const SurfacePoint&, const Hit&) const override { return axis_u_; }
   // From 0 at the corner to 1 along each edge.
+  UvDerivatives uv_derivatives(const SurfacePoint& point, const Hit& hit) const override;
   Vec2f uv(const SurfacePoint& point, const Hit& hit) const override;
   std::optional<ShapeSample> sample(Vec3f reference, Vec2f u) const override;
   float pdf(Vec3f reference, const SurfacePoint& point, std::uint32_t primitive, Vec3f wi, float distance) const override;

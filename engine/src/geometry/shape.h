@@ -9,6 +9,7 @@
 #include "geometry/surface_point.h"
 #include "math/bounds.h"
 #include "math/ray.h"
+#include "math/rgb.h"
 #include "math/vec.h"
 
 namespace fluxfarm {
@@ -33,8 +34,17 @@ class Shape {
   // Direction of increasing u at a hit (world, unit, not necessarily orthogonal to the normal); frames of anisotropic materials.
   virtual Vec3f tangent(const SurfacePoint& point, const Hit& hit) const = 0;
 
+  // Derivatives of the position by the texture coordinates at a hit (world, m).
+  struct UvDerivatives {
+    Vec3f dp_du, dp_dv;
+  };
+  virtual UvDerivatives uv_derivatives(const SurfacePoint& point, const Hit& hit) const = 0;
+
   // Texture coordinates at a hit, as Mitsuba 3 defines them for the shape.
   virtual Vec2f uv(const SurfacePoint& point, const Hit& hit) const = 0;
+
+  // Colour at a hit, between those of the vertices; of a mesh that has them, black for all other shapes.
+  virtual Rgb vertex_color(const Hit&) const { return {}; }
 
   // Chooses a point of the surface as seen from `reference`. Empty: nothing of it can be seen with that random number.
   virtual std::optional<ShapeSample> sample(Vec3f reference, Vec2f u) const = 0;

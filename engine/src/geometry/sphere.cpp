@@ -24,6 +24,15 @@ Vec2f Sphere::uv(const SurfacePoint& point, const Hit&) const {
   return {turn_fraction(local.y, local.x), std::atan2(horizontal, local.z) * kInvPi};
 }
 
+Shape::UvDerivatives Sphere::uv_derivatives(const SurfacePoint& point, const Hit&) const {
+  // Along the parallels, and down the meridians by half a turn.
+  const Vec3f local = axes_.to_local(point.position - center_);
+  const float horizontal = std::sqrt(local.x * local.x + local.y * local.y);
+  const Vec2f out = horizontal > 0 ? Vec2f{local.x / horizontal, local.y / horizontal} : Vec2f{1, 0};
+  return {axes_.to_world({-kTwoPi * local.y, kTwoPi * local.x, 0}),
+          axes_.to_world({kPi * local.z * out.x, kPi * local.z * out.y, -kPi * horizontal})};
+}
+
 float Sphere::one_minus_cos(float d2) const {
   const float sin2 = radius_ * radius_ / d2;
   return sin2 / (1 + safe_sqrt(1 - sin2));

@@ -16,6 +16,7 @@ class Sphere final : public Shape {
   SurfacePoint surface_point(const Ray& ray, const Hit& hit) const override;
   Vec3f tangent(const SurfacePoint& point, const Hit& hit) const override;
   // u is the longitude over 2 pi, from the x axis towards y; v the colatitude over pi, from the z axis.
+  UvDerivatives uv_derivatives(const SurfacePoint& point, const Hit& hit) const override;
   Vec2f uv(const SurfacePoint& point, const Hit& hit) const override;
   // From outside by solid angle, from inside (or on the surface) by area.
   std::optional<ShapeSample> sample(Vec3f reference, Vec2f u) const override;

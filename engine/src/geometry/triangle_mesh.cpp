@@ -53,6 +53,24 @@ Vec3f TriangleMesh::tangent(const SurfacePoint&, const Hit& hit) const {
   return determinant != 0 && length_squared(d) > 0 ? normalize(d) : normalize(e1);
 }
 
+Shape::UvDerivatives TriangleMesh::uv_derivatives(const SurfacePoint&, const Hit& hit) const {
+  const auto [a, b, c] = corners(hit.primitive);
+  const Vec3f e1 = b - a, e2 = c - a;
+  if (data_.uvs.empty()) return {e1, e2};
+  const std::uint32_t* index = data_.indices.data() + 3 * static_cast<std::size_t>(hit.primitive);
+  const Vec2f uv0 = data_.uvs[index[0]], uv1 = data_.uvs[index[1]], uv2 = data_.uvs[index[2]];
+  const float du1 = uv1.x - uv0.x, dv1 = uv1.y - uv0.y, du2 = uv2.x - uv0.x, dv2 = uv2.y - uv0.y;
+  const float determinant = du1 * dv2 - dv1 * du2;
+  if (determinant == 0) return {normalize(e1), normalize(e2)};  // no texture to speak of: all of it in a point or a line
+  return {(dv2 * e1 - dv1 * e2) / determinant, (du1 * e2 - du2 * e1) / determinant};
+}
+
+Rgb TriangleMesh::vertex_color(const Hit& hit) const {
+  if (data_.colors.empty()) return {};
+  const std::uint32_t* index = data_.indices.data() + 3 * static_cast<std::size_t>(hit.primitive);
+  return data_.colors[index[0]] * (1 - hit.u - hit.v) + data_.colors[index[1]] * hit.u + data_.colors[index[2]] * hit.v;
+}
+
 Vec2f TriangleMesh::uv(const SurfacePoint&, const Hit& hit) const {
   if (data_.uvs.empty()) return {hit.u, hit.v};
   const std::uint32_t* index = data_.indices.data() + 3 * static_cast<std::size_t>(hit.primitive);

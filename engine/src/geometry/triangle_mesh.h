@@ -16,6 +16,7 @@ class TriangleMesh final : public Shape {
     std::vector<Vec3f> normals;          // per vertex, unit; or empty: flat
     std::vector<Vec2f> uvs;              // per vertex; or empty
     std::vector<std::uint32_t> indices;  // three per triangle, counter-clockwise seen from the front
+    std::vector<Rgb> colors{};           // per vertex; or empty
   };
   // `flipped` swaps front and back. `emissive` builds the tables that sample() and pdf() need.
   TriangleMesh(Data data, bool flipped, bool emissive);
@@ -23,7 +24,9 @@ class TriangleMesh final : public Shape {
   SurfacePoint surface_point(const Ray& ray, const Hit& hit) const override;
   Vec3f tangent(const SurfacePoint& point, const Hit& hit) const override;
   // Those of the vertices, between them; the barycentric weights of the second and third vertex if there are none.
+  UvDerivatives uv_derivatives(const SurfacePoint& point, const Hit& hit) const override;
   Vec2f uv(const SurfacePoint& point, const Hit& hit) const override;
+  Rgb vertex_color(const Hit& hit) const override;
   std::optional<ShapeSample> sample(Vec3f reference, Vec2f u) const override;
   float pdf(Vec3f reference, const SurfacePoint& point, std::uint32_t primitive, Vec3f wi, float distance) const override;
   float area() const override { return area_; }

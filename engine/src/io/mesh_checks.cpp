@@ -104,7 +104,7 @@ MeshDescription finish_mesh(RawMesh mesh, const MeshOptions& options, std::vecto
   if (options.flip_tex_coords) {
     for (Vec2f& uv : mesh.uvs) uv.y = 1 - uv.y;
   }
-  return {std::move(mesh.positions), std::move(mesh.normals), std::move(mesh.uvs), std::move(mesh.indices)};
+  return {std::move(mesh.positions), std::move(mesh.normals), std::move(mesh.uvs), std::move(mesh.indices), std::move(mesh.colors)};
 }
 
 }  // namespace fluxfarm

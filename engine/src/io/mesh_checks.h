@@ -15,6 +15,7 @@ struct RawMesh {
   std::vector<Vec3f> positions;
   std::vector<Vec3f> normals;          // one per vertex or none at all; 0 0 0 where the file gives none; any length
   std::vector<Vec2f> uvs;              // one per vertex or none
+  std::vector<Rgb> colors;             // one per vertex or none; linear
   std::vector<std::uint32_t> indices;  // three per triangle
   std::string name;                    // the file as messages show it
 };

@@ -126,6 +126,28 @@ std::array<int, 2> find_uvs(const PlyElement& vertex) {
   return {-1, -1};
 }
 
+// Places of the colour among the properties, or -1.
+std::array<int, 3> find_color(const PlyElement& vertex) {
+  const std::array<int, 3> letters{vertex.find("r"), vertex.find("g"), vertex.find("b")};
+  if (*std::min_element(letters.begin(), letters.end()) >= 0) return letters;
+  return {vertex.find("red"), vertex.find("green"), vertex.find("blue")};
+}
+
+// What a colour of one means in that type: the greatest integer.
+float one_in(PlyType type) {
+  switch (type) {
+    case PlyType::kInt8: return 127;
+    case PlyType::kUint8: return 255;
+    case PlyType::kInt16: return 32767;
+    case PlyType::kUint16: return 65535;
+    case PlyType::kInt32: return 2147483647.0f;
+    case PlyType::kUint32: return 4294967295.0f;
+    case PlyType::kFloat32:
+    case PlyType::kFloat64: return 1;
+  }
+  return 1;
+}
+
 void read_vertices(PlyRows& rows, const PlyHeader& header, const PlyElement& element, RawMesh& mesh) {
   const std::array<int, 3> position{element.find("x"), element.find("y"), element.find("z")};
   const std::array<int, 3> normal{element.find("nx"), element.find("ny"), element.find("nz")};
@@ -133,6 +155,8 @@ void read_vertices(PlyRows& rows, const PlyHeader& header, const PlyElement& ele
   if (*std::min_element(position.begin(), position.end()) < 0) rows.fail("the vertices lack x, y or z");
   const bool has_normals = *std::min_element(normal.begin(), normal.end()) >= 0;
   const bool has_uvs = uv[0] >= 0;
+  const std::array<int, 3> color = find_color(element);
+  const bool has_colors = *std::min_element(color.begin(), color.end()) >= 0;
 
   std::vector<float> row(element.properties.size());
   mesh.positions.reserve(element.count);
@@ -148,6 +172,8 @@ void read_vertices(PlyRows& rows, const PlyHeader& header, const PlyElement& ele
     const auto value = [&](int p) { return row[static_cast<std::size_t>(p)]; };
     mesh.positions.push_back({value(position[0]), value(position[1]), value(position[2])});
     if (has_normals) mesh.normals.push_back({value(normal[0]), value(normal[1]), value(normal[2])});
+    const auto part = [&](int p) { return value(p) / one_in(element.properties[static_cast<std::size_t>(p)].type); };
+    if (has_colors) mesh.colors.push_back({part(color[0]), part(color[1]), part(color[2])});
     if (has_uvs) mesh.uvs.push_back({value(uv[0]), value(uv[1])});
   }
 }

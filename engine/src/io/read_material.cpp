@@ -4,37 +4,14 @@
 #include <cmath>
 
 #include "io/conductor_presets.h"
-#include "io/named_ior.h"
+#include "io/material_parameters.h"
 #include "io/properties.h"
+#include "io/read_principled.h"
 #include "io/text.h"
 #include "support/error.h"
 
 namespace fluxfarm {
 namespace {
-
-// An index of refraction given as a number or by the name of a material.
-float read_ior(Properties& properties, const std::string& name, const char* default_name) {
-  const PropertyValue* value = properties.raw(name);
-  const std::string* text = value ? std::get_if<std::string>(value) : nullptr;
-  if (value && !text) return properties.number(name, 1, kPositive);
-  const std::optional<float> ior = named_ior(text ? *text : default_name);
-  if (!ior) properties.fail(name, "expected a number greater than 0 or one of: " + joined(ior_names()));
-  return *ior;
-}
-
-float read_relative_ior(Properties& properties, const char* default_interior) {
-  const float interior = read_ior(properties, "int_ior", default_interior);
-  return interior / read_ior(properties, "ext_ior", "air");
-}
-
-// A colour that may be a texture: then its constant factor is 1 and `texture` its index.
-Rgb read_colour(Properties& properties, TextureReader& textures, const std::string& name, Rgb otherwise, int& texture) {
-  if (const PluginNode* node = properties.texture(name)) {
-    texture = textures.read(*node);
-    return Rgb(1);
-  }
-  return properties.rgb(name, otherwise, kUnitInterval);
-}
 
 DielectricDescription read_dielectric(Properties& properties, TextureReader& textures) {
   DielectricDescription result;
@@ -123,6 +100,10 @@ MaterialDescription read_simple(const PluginNode& node, TextureReader& textures)
     result = diffuse;
   } else if (node.type == "dielectric") {
     result = read_dielectric(properties, textures);
+  } else if (node.type == "thindielectric") {
+    result = ThinDielectricDescription{read_dielectric(properties, textures)};
+  } else if (node.type == "null") {
+    result = NullDescription{};
   } else if (node.type == "roughdielectric") {
     const DielectricDescription dielectric = read_dielectric(properties, textures);
     if (dielectric.eta == 1)
@@ -132,6 +113,8 @@ MaterialDescription read_simple(const PluginNode& node, TextureReader& textures)
     result = read_conductor(properties, textures);
   } else if (node.type == "roughconductor") {
     result = read_rough_conductor(properties, textures);
+  } else if (node.type == "principled") {
+    result = read_principled(properties, textures);
   } else if (node.type == "plastic") {
     result = read_plastic(properties, textures);
   } else {
@@ -142,10 +125,6 @@ MaterialDescription read_simple(const PluginNode& node, TextureReader& textures)
   return result;
 }
 
-bool transmits(const MaterialDescription& material) {
-  return std::holds_alternative<DielectricDescription>(material) || std::holds_alternative<RoughDielectricDescription>(material);
-}
-
 }  // namespace
 
 int MaterialReader::read(const PluginNode& bsdf_or_reference) {
@@ -154,35 +133,25 @@ int MaterialReader::read(const PluginNode& bsdf_or_reference) {
                                : bsdf_or_reference;
   if (const auto known = indices_.find(&node); known != indices_.end()) return known->second;
   if (!being_read_.insert(&node).second) throw SceneError(bsdf_or_reference.place, title(node) + " contains itself");
-  const MaterialDescription material = node.type == "twosided" ? read_twosided(node) : read_simple(node, textures_);
+  const MaterialDescription material = read_any(node);
   being_read_.erase(&node);
   materials_.push_back(material);
   return indices_[&node] = static_cast<int>(materials_.size()) - 1;
+}
+
+MaterialDescription MaterialReader::read_any(const PluginNode& node) {
+  if (node.type == "twosided") return read_twosided(node);
+  if (node.type == "mask") return read_mask(node);
+  if (node.type == "blendbsdf") return read_blend(node);
+  if (node.type == "normalmap") return read_normal_map(node);
+  if (node.type == "bumpmap") return read_bump_map(node);
+  return read_simple(node, textures_);
 }
 
 int MaterialReader::diffuse(float reflectance) {
   const auto [found, is_new] = greys_.emplace(reflectance, static_cast<int>(materials_.size()));
   if (is_new) materials_.push_back(DiffuseDescription{Rgb(reflectance)});
   return found->second;
-}
-
-MaterialDescription MaterialReader::read_twosided(const PluginNode& node) {
-  Properties(node).finish();
-  std::vector<int> sides;
-  for (const PluginNode& child : node.children) {
-    if (child.kind != PluginKind::kBsdf && child.kind != PluginKind::kReference) fail_nested(node, child, "one or two bsdfs");
-    int side = read(child);
-    const MaterialDescription& material = materials_[static_cast<std::size_t>(side)];
-    if (transmits(material))
-      throw SceneError(child.place, title(node) + " holds a material that transmits light, expected an opaque one");
-    // A twosided within a twosided is only ever seen from its front.
-    if (const auto* inner = std::get_if<TwosidedDescription>(&material)) side = inner->front;
-    sides.push_back(side);
-  }
-  if (sides.empty() || sides.size() > 2) {
-    throw SceneError(node.place, title(node) + " holds " + std::to_string(sides.size()) + " bsdfs, expected one or two");
-  }
-  return TwosidedDescription{sides.front(), sides.back()};
 }
 
 }  // namespace fluxfarm

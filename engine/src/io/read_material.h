@@ -1,6 +1,7 @@
 // Reads bsdf plugins into material descriptions. A material that several shapes refer to is read once.
 #pragma once
 
+#include <string>
 #include <unordered_map>
 #include <unordered_set>
 #include <vector>
@@ -27,7 +28,16 @@ class MaterialReader {
   bool has_read(const PluginNode& bsdf) const { return indices_.count(&bsdf) != 0; }
 
  private:
-  MaterialDescription read_twosided(const PluginNode& node);
+  MaterialDescription read_any(const PluginNode& node);
+  // Those that hold others: read_nested_material.cpp.
+  TwosidedDescription read_twosided(const PluginNode& node);
+  MaskDescription read_mask(const PluginNode& node);
+  BlendDescription read_blend(const PluginNode& node);
+  NormalMapDescription read_normal_map(const PluginNode& node);
+  BumpMapDescription read_bump_map(const PluginNode& node);
+  // Indices of the bsdfs inside a plugin, so many, beside a texture of that name; "" for none.
+  std::vector<int> read_held(const PluginNode& node, std::size_t least, std::size_t most, const std::string& texture);
+  bool transmits(int material) const;
 
   const PluginsById& plugins_;
   TextureReader& textures_;

@@ -18,6 +18,16 @@ CheckerboardDescription read_checkerboard(const PluginNode& node) {
   return result;
 }
 
+MeshAttributeDescription read_mesh_attribute(const PluginNode& node) {
+  Properties properties(node);
+  MeshAttributeDescription result;
+  if (!properties.has("name")) properties.fail("name", "lacks the parameter \"name\"");
+  if (properties.text("name", "") != "vertex_color") properties.fail("name", "expected vertex_color");
+  result.scale = properties.number("scale", 1, kUnitInterval);
+  properties.finish();
+  return result;
+}
+
 TextureFilter read_filter(Properties& properties) {
   const std::string filter = properties.text("filter_type", "bilinear");
   if (filter != "bilinear" && filter != "nearest") properties.fail("filter_type", "expected bilinear or nearest");
@@ -42,10 +52,17 @@ int TextureReader::read(const PluginNode& texture_or_reference) {
   check_no_children(node);
   if (node.type == "checkerboard") {
     textures_.emplace_back(read_checkerboard(node));
+  } else if (node.type == "mesh_attribute") {
+    textures_.emplace_back(read_mesh_attribute(node));
   } else {
     textures_.emplace_back(read_bitmap(node));
   }
   return indices_[&node] = static_cast<int>(textures_.size()) - 1;
+}
+
+bool TextureReader::is_smooth(int texture) const {
+  const auto* bitmap = std::get_if<BitmapDescription>(&textures_[static_cast<std::size_t>(texture)]);
+  return bitmap != nullptr && bitmap->filter == TextureFilter::kBilinear;
 }
 
 BitmapDescription TextureReader::read_bitmap(const PluginNode& node) {

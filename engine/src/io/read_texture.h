@@ -26,6 +26,9 @@ class TextureReader {
   // Index of a texture, or of the texture that a reference means. Throws SceneError.
   int read(const PluginNode& texture_or_reference);
 
+  // Whether that texture has slopes: an interpolated image, no squares, no nearest texels.
+  bool is_smooth(int texture) const;
+
   bool has_read(const PluginNode& texture) const { return indices_.count(&texture) != 0; }
 
  private:

@@ -54,6 +54,15 @@ bool has_light(const SceneDescription& scene) {
          });
 }
 
+// Without a texture that shows them, the colours of meshes are not kept.
+void drop_unused_colors(SceneDescription& scene) {
+  const auto shows_colors = [](const TextureDescription& t) { return std::holds_alternative<MeshAttributeDescription>(t); };
+  if (std::any_of(scene.textures.begin(), scene.textures.end(), shows_colors)) return;
+  for (ShapeDescription& shape : scene.shapes) {
+    if (auto* mesh = std::get_if<MeshDescription>(&shape.geometry)) mesh->colors = {};
+  }
+}
+
 SceneDescription build(const PluginNode& root, const Bundle& bundle) {
   SceneDescription scene;
   Properties(root).finish();
@@ -86,6 +95,7 @@ SceneDescription build(const PluginNode& root, const Bundle& bundle) {
       default: fail_nested(root, child, "integrator, sensor, bsdf, texture, shape and emitter");
     }
   }
+  drop_unused_colors(scene);
   check_unused(root, plugins, bundle, materials, textures);
   if (!sensor) throw SceneError(root.place, "the scene has no sensor, expected one, as in <sensor type=\"perspective\">");
   read_sensor(*sensor, scene);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <optional>
 
+#include "materials/bsdf.h"
 #include "math/vec.h"
 
 namespace fluxfarm {
@@ -27,5 +28,11 @@ inline std::optional<Vec3f> half_vector(const Vec3f& wo, const Vec3f& wi, float 
   if (!(length2 > 1e-18f) || h.z == 0) return std::nullopt;
   return h * (std::copysign(1.0f, h.z) / std::sqrt(length2));
 }
+
+// All light of that direction, tinted, on its way as if there were no surface.
+inline BsdfSample straight_on(const Vec3f& wo, Rgb tint) { return {.wi = -wo, .weight = tint, .delta = true}; }
+
+// A random number that was stretched after a choice, kept in [0,1).
+inline float below_one(float u) { return std::min(u, 1 - 0x1p-24f); }
 
 }  // namespace fluxfarm

@@ -10,8 +10,8 @@
 
 namespace fluxfarm {
 
-// One entry for each description, in the same order: null where no parameter has a texture, and for twosided, whose sides are
-// entries of their own. `bsdfs` are those of the same descriptions; they and the textures are borrowed.
+// One entry for each description, in the same order: null where nothing has a texture. `bsdfs` are those of the same descriptions;
+// they and the textures are borrowed.
 std::vector<std::unique_ptr<TexturedMaterial>> make_textured_materials(const std::vector<MaterialDescription>& descriptions,
                                                                        const std::vector<std::unique_ptr<Bsdf>>& bsdfs,
                                                                        const Textures& textures);

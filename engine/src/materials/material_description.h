@@ -68,14 +68,66 @@ struct RoughPlasticDescription {
   Roughness roughness;  // isotropic: alpha_u = alpha_v
 };
 
+// A number that may vary over the surface: the luminance of the texture, if there is one, times the factor.
+struct ScalarParameter {
+  float factor = 0;
+  int texture = kNoTexture;
+};
+
+// Burley's principled material. All numbers in [0, 1] but eta, which is positive.
+struct PrincipledDescription {
+  Rgb base_color{0.5f};
+  int base_color_texture = kNoTexture;
+  ScalarParameter roughness{0.5f};  // its square is the alpha of the microfacets
+  ScalarParameter anisotropic, metallic, spec_trans, spec_tint, sheen, sheen_tint, flatness, clearcoat, clearcoat_gloss;
+  float eta = 1.5f;  // interior over exterior index of refraction
+};
+
 // Front and back are indices into the same list of materials; neither may transmit light.
 struct TwosidedDescription {
   int front = 0;
   int back = 0;
 };
 
-using MaterialDescription =
-    std::variant<DiffuseDescription, DielectricDescription, ConductorDescription, RoughConductorDescription,
-                 RoughDielectricDescription, PlasticDescription, RoughPlasticDescription, TwosidedDescription>;
+// A pane: a dielectric on both sides of nothing.
+struct ThinDielectricDescription {
+  DielectricDescription dielectric;
+};
+
+// Passes everything.
+struct NullDescription {};
+
+// The materials that these hold are indices into the same list.
+
+// `opacity` in [0, 1] is covered by the material; the rest passes.
+struct MaskDescription {
+  int material = 0;
+  ScalarParameter opacity{0.5f};
+};
+
+// (1 - weight) of the first, weight of the second.
+struct BlendDescription {
+  int first = 0;
+  int second = 0;
+  ScalarParameter weight{0.5f};
+};
+
+// Normals are 2 rgb - 1, in the frame of the surface.
+struct NormalMapDescription {
+  int material = 0;
+  int normals_texture = 0;
+};
+
+// Height is scale times the luminance of the texture, m.
+struct BumpMapDescription {
+  int material = 0;
+  int height_texture = 0;
+  float scale = 1;
+};
+
+using MaterialDescription = std::variant<DiffuseDescription, DielectricDescription, ConductorDescription, RoughConductorDescription,
+                                         RoughDielectricDescription, PlasticDescription, RoughPlasticDescription,
+                                         PrincipledDescription, TwosidedDescription, ThinDielectricDescription, NullDescription,
+                                         MaskDescription, BlendDescription, NormalMapDescription, BumpMapDescription>;
 
 }  // namespace fluxfarm

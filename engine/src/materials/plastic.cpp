@@ -65,10 +65,10 @@ class TexturedPlastic final : public TexturedMaterial {
         diffuse_(texture_of(textures, d.diffuse_reflectance_texture)),
         specular_(texture_of(textures, d.specular_reflectance_texture)) {}
 
-  const Bsdf& at(Vec2f uv, BsdfSpace& space) const override {
+  const Bsdf& add_to(BsdfSpace& space, const MaterialPoint& point) const override {
     PlasticDescription d = d_;
-    d.diffuse_reflectance = colour_at(d.diffuse_reflectance, diffuse_, uv);
-    d.specular_reflectance = colour_at(d.specular_reflectance, specular_, uv);
+    d.diffuse_reflectance = colour_at(d.diffuse_reflectance, diffuse_, point.texture);
+    d.specular_reflectance = colour_at(d.specular_reflectance, specular_, point.texture);
     return space.make<Plastic>(d);
   }
 

@@ -87,9 +87,9 @@ class TexturedRoughConductor final : public TexturedMaterial {
         alpha_(texture_of(textures, d.roughness.alpha_texture)),
         white_(at_alpha(luminance(alpha_->mean_value()), Rgb{1.0f})) {}
 
-  const Bsdf& at(Vec2f uv, BsdfSpace& space) const override {
-    const Rgb colour = colour_at(d_.conductor.specular_reflectance, colour_, uv);
-    return space.make<RoughConductorAtHit<Distribution>>(at_alpha(luminance(alpha_->value(uv)), colour), white_, colour);
+  const Bsdf& add_to(BsdfSpace& space, const MaterialPoint& point) const override {
+    const Rgb colour = colour_at(d_.conductor.specular_reflectance, colour_, point.texture);
+    return space.make<RoughConductorAtHit<Distribution>>(at_alpha(luminance(alpha_->value(point.texture)), colour), white_, colour);
   }
 
  private:

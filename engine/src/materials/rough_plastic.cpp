@@ -124,9 +124,9 @@ class TexturedRoughPlastic final : public TexturedMaterial {
         specular_(texture_of(textures, d.plastic.specular_reflectance_texture)),
         coat_(coloured(Rgb{0.0f}, Rgb{1.0f})) {}
 
-  const Bsdf& at(Vec2f uv, BsdfSpace& space) const override {
-    const Rgb diffuse = colour_at(d_.plastic.diffuse_reflectance, diffuse_, uv);
-    const Rgb specular = colour_at(d_.plastic.specular_reflectance, specular_, uv);
+  const Bsdf& add_to(BsdfSpace& space, const MaterialPoint& point) const override {
+    const Rgb diffuse = colour_at(d_.plastic.diffuse_reflectance, diffuse_, point.texture);
+    const Rgb specular = colour_at(d_.plastic.specular_reflectance, specular_, point.texture);
     return space.make<RoughPlasticAtHit<Distribution>>(coloured(diffuse, specular), coat_);
   }
 

@@ -46,12 +46,14 @@ class TintedMaterial final : public TexturedMaterial {
  public:
   TintedMaterial(const TintedDescription& d, Parts parts) : d_(d), parts_(std::move(parts)) {}
 
-  const Bsdf& at(Vec2f uv, BsdfSpace& space) const override {
-    return space.make<TintedBsdf>(*d_.base, parts_, colour(d_.reflected, uv), colour(d_.transmitted, uv));
+  const Bsdf& add_to(BsdfSpace& space, const MaterialPoint& point) const override {
+    return space.make<TintedBsdf>(*d_.base, parts_, colour(d_.reflected, point.texture), colour(d_.transmitted, point.texture));
   }
 
  private:
-  static Rgb colour(const Texture* texture, Vec2f uv) { return texture != nullptr ? texture->value(uv) : Rgb{1.0f}; }
+  static Rgb colour(const Texture* texture, const TexturePoint& point) {
+    return texture != nullptr ? texture->value(point) : Rgb{1.0f};
+  }
 
   TintedDescription d_;
   Parts parts_;

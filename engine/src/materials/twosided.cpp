@@ -1,5 +1,7 @@
 // Gives a one-sided surface a back: the side of wo decides which of two BSDFs is asked, in a frame whose z is on that side.
 #include "materials/bsdf_factories.h"
+#include "materials/nested.h"
+#include "materials/textured_factories.h"
 
 namespace fluxfarm {
 namespace {
@@ -35,7 +37,26 @@ class Twosided final : public Bsdf {
   const Bsdf* sides_[2];  // front, back
 };
 
+// Within another material; one that belongs to a surface is asked by its sides.
+class TexturedTwosided final : public TexturedMaterial {
+ public:
+  TexturedTwosided(NestedMaterial front, NestedMaterial back) : front_(front), back_(back) {}
+
+  const Bsdf& add_to(BsdfSpace& space, const MaterialPoint& point) const override {
+    const Bsdf& front = front_.at(point, space);
+    const Bsdf& back = back_.at(point, space);
+    return space.make<Twosided>(front, back);
+  }
+
+ private:
+  NestedMaterial front_, back_;
+};
+
 }  // namespace
+
+std::unique_ptr<TexturedMaterial> make_textured_twosided(NestedMaterial front, NestedMaterial back) {
+  return std::make_unique<TexturedTwosided>(front, back);
+}
 
 std::unique_ptr<Bsdf> make_twosided(const Bsdf& front, const Bsdf& back) { return std::make_unique<Twosided>(front, back); }
 

@@ -23,12 +23,13 @@ namespace fluxfarm {
 
 // ---------------------------------------------------------------- shapes
 
-// Triangle mesh in world space. Normals and texture coordinates are per vertex or absent (empty).
+// Triangle mesh in world space. Normals, texture coordinates and colours are per vertex or absent (empty).
 struct MeshDescription {
   std::vector<Vec3f> positions;
   std::vector<Vec3f> normals;  // unit length
   std::vector<Vec2f> uvs;
   std::vector<std::uint32_t> indices;  // three per triangle; counter-clockwise seen from the front
+  std::vector<Rgb> colors{};           // linear Rec.709, in [0, 1]
 };
 
 // Image of the square [-1,1]^2 x {0} with normal +z under an affine map.

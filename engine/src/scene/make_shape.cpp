@@ -6,8 +6,8 @@ namespace fluxfarm {
 namespace {
 
 std::unique_ptr<TriangleMesh> make(const MeshDescription& mesh, bool flipped, bool emissive) {
-  return std::make_unique<TriangleMesh>(TriangleMesh::Data{mesh.positions, mesh.normals, mesh.uvs, mesh.indices}, flipped,
-                                        emissive);
+  return std::make_unique<TriangleMesh>(TriangleMesh::Data{mesh.positions, mesh.normals, mesh.uvs, mesh.indices, mesh.colors},
+                                        flipped, emissive);
 }
 
 std::unique_ptr<Rectangle> make(const RectangleDescription& rectangle, bool flipped, bool) {

@@ -4,18 +4,21 @@
 #include "materials/make_textured.h"
 #include "scene/make_emitter.h"
 #include "scene/make_shape.h"
+#include "scene/material_needs.h"
+#include "support/error.h"
 
 namespace fluxfarm {
 namespace {
 
-bool is_anisotropic(const std::vector<MaterialDescription>& materials, const MaterialDescription& material) {
-  const auto differs = [](const Roughness& r) { return r.alpha_u != r.alpha_v; };
-  if (const auto* conductor = std::get_if<RoughConductorDescription>(&material)) return differs(conductor->roughness);
-  if (const auto* dielectric = std::get_if<RoughDielectricDescription>(&material)) return differs(dielectric->roughness);
-  if (const auto* twosided = std::get_if<TwosidedDescription>(&material)) {
-    return is_anisotropic(materials, materials[twosided->front]) || is_anisotropic(materials, materials[twosided->back]);
+void check_colors(const std::string& shape, const std::vector<Rgb>& colors) {
+  for (std::size_t i = 0; i < colors.size(); ++i) {
+    const Rgb c = colors[i];
+    for (const float channel : {c.r, c.g, c.b}) {
+      if (channel >= 0 && channel <= 1) continue;
+      throw SceneError(shape, "vertex_color of vertex " + std::to_string(i) + " has the value " + std::to_string(channel) +
+                                  ", expected numbers from 0 to 1");
+    }
   }
-  return false;
 }
 
 Bounds bounds_of(const std::vector<Scene::Surface>& surfaces) {
@@ -53,16 +56,28 @@ Scene::Scene(const SceneDescription& description, int threads)
     surface.two_sided = sides.front != nullptr;
     surface.has_continuous_lobe = bsdf->has_continuous_lobe();
     surface.chooses_lobe = bsdf->chooses_lobe();
-    surface.anisotropic = is_anisotropic(description.materials, description.materials[shape.material]);
+    const MaterialNeeds needs = material_needs(description, static_cast<std::size_t>(shape.material));
+    surface.anisotropic = needs.tangents;
+    surface.bumpy = needs.uv_derivatives;
+    surface.vertex_colored = needs.vertex_colors;
     const TexturedSides& sides_with_textures =
         textured_sides_.emplace_back(textured_sides(description.materials, static_cast<std::size_t>(shape.material)));
     surface.textured = sides_with_textures.front != nullptr || sides_with_textures.back != nullptr;
-    census_.anisotropic_materials |= surface.anisotropic;
+    census_.anisotropic_materials |= needs.anisotropic;
+    census_.normal_maps |= needs.normal_maps;
+    census_.vertex_colors |= needs.vertex_colors;
+    census_.masks |= needs.masks;
     census_.delta_materials |= !surface.has_continuous_lobe && !shape.emitted_radiance;
-    if (const auto* mesh = dynamic_cast<const TriangleMesh*>(surface.shape.get())) {
+    const auto* mesh = dynamic_cast<const TriangleMesh*>(surface.shape.get());
+    if (needs.vertex_colors && (mesh == nullptr || mesh->data().colors.empty())) {
+      throw SceneError(shape.name,
+                       "its material shows the attribute vertex_color, which the shape lacks; expected a mesh with colours");
+    }
+    if (needs.vertex_colors) check_colors(shape.name, mesh->data().colors);
+    if (mesh != nullptr) {
       census_.triangles += mesh->triangles();
       census_.shading_normals |= !mesh->data().normals.empty();
-      if (surface.textured && mesh->data().uvs.empty()) {
+      if (needs.uvs && mesh->data().uvs.empty()) {
         warnings_.push_back(shape.name + ": the mesh has no texture coordinates; its texture fills every triangle by itself");
       }
     }

@@ -27,6 +27,9 @@ struct Census {
   std::size_t materials = 0, textures = 0;
   bool delta_materials = false;        // some material has only delta lobes
   bool anisotropic_materials = false;  // tangent frames are needed
+  bool normal_maps = false;            // or bump maps
+  bool vertex_colors = false;          // a texture shows them
+  bool masks = false;                  // some material lets light straight through a part of the surface, or all of it
   bool shading_normals = false;        // some mesh has normals of its own
 };
 
@@ -41,8 +44,10 @@ class Scene {
     const AreaEmitter* emitter = nullptr;  // nullptr: does not emit
     float choice_probability = 0;          // of its emitter in next-event estimation
     bool two_sided = false;
-    bool anisotropic = false;
-    bool textured = false;  // on one side at least: ask textured_material()
+    bool anisotropic = false;  // or has a normal map: the frame follows the texture coordinates
+    bool textured = false;     // on one side at least: ask textured_material()
+    // What a textured material needs to know of a place besides uv.
+    bool bumpy = false, vertex_colored = false;
     // The material's answers to the questions of the same name.
     bool has_continuous_lobe = false, chooses_lobe = false;
   };

@@ -13,17 +13,27 @@ class Bitmap final : public Texture {
     FLUXFARM_CHECK(image_ != nullptr, "a texture in use has its image");
   }
 
-  Rgb value(Vec2f uv) const override {
-    const Vec2f p = to_uv_(uv);
+  Rgb value(const TexturePoint& point) const override {
+    const Vec2f p = to_uv_(point.uv);
     const float x = inside(p.x) * static_cast<float>(image_->width());
     const float y = inside(p.y) * static_cast<float>(image_->height());
     if (filter_ == TextureFilter::kNearest) return image_->texel(column(std::floor(x)), row(std::floor(y)));
-    const float left = std::floor(x - 0.5f), top = std::floor(y - 0.5f);
-    const float s = x - 0.5f - left, t = y - 0.5f - top;
-    const int x0 = column(left), x1 = column(left + 1), y0 = row(top), y1 = row(top + 1);
-    const Rgb upper = image_->texel(x0, y0) * (1 - s) + image_->texel(x1, y0) * s;
-    const Rgb lower = image_->texel(x0, y1) * (1 - s) + image_->texel(x1, y1) * s;
-    return upper * (1 - t) + lower * t;
+    const Corners c = corners(x, y);
+    const Rgb upper = c.texel[0] * (1 - c.s) + c.texel[1] * c.s;
+    const Rgb lower = c.texel[2] * (1 - c.s) + c.texel[3] * c.s;
+    return upper * (1 - c.t) + lower * c.t;
+  }
+
+  // Of the bilinear surface: constant across a texel's row, with steps at the centres. Mirrored squares run backwards.
+  Vec2f luminance_gradient(Vec2f uv) const override {
+    if (filter_ == TextureFilter::kNearest) return {};
+    const Vec2f p = to_uv_(uv);
+    const float width = static_cast<float>(image_->width()), height = static_cast<float>(image_->height());
+    const Corners c = corners(inside(p.x) * width, inside(p.y) * height);
+    const float y00 = luminance(c.texel[0]), y10 = luminance(c.texel[1]), y01 = luminance(c.texel[2]), y11 = luminance(c.texel[3]);
+    const float by_x = ((y10 - y00) * (1 - c.t) + (y11 - y01) * c.t) * width * sense(p.x);
+    const float by_y = ((y01 - y00) * (1 - c.s) + (y11 - y10) * c.s) * height * sense(p.y);
+    return to_uv_.gradient({by_x, by_y});
   }
 
   Rgb mean_value() const override {
@@ -41,6 +51,30 @@ class Bitmap final : public Texture {
   }
 
  private:
+  // The texels around a place of the image, in texels from its corner: upper left and right, lower left and right; s and t from the
+  // first.
+  struct Corners {
+    Rgb texel[4];
+    float s, t;
+  };
+  Corners corners(float x, float y) const {
+    const float left = std::floor(x - 0.5f), top = std::floor(y - 0.5f);
+    const int x0 = column(left), x1 = column(left + 1), y0 = row(top), y1 = row(top + 1);
+    return {{image_->texel(x0, y0), image_->texel(x1, y0), image_->texel(x0, y1), image_->texel(x1, y1)},
+            x - 0.5f - left,
+            y - 0.5f - top};
+  }
+
+  // -1 where the image is shown mirrored, 0 where it is continued outside, else 1.
+  float sense(float u) const {
+    switch (wrap_) {
+      case TextureWrap::kRepeat: return 1;
+      case TextureWrap::kMirror: return fraction(0.5f * u) > 0.5f ? -1.0f : 1.0f;
+      case TextureWrap::kClamp: return u > 0 && u < 1 ? 1.0f : 0.0f;
+    }
+    return 1;
+  }
+
   // The coordinate of the image that stands at u, in [0,1].
   float inside(float u) const {
     switch (wrap_) {

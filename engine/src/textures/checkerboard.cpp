@@ -9,8 +9,8 @@ class Checkerboard final : public Texture {
  public:
   explicit Checkerboard(const CheckerboardDescription& d) : color0_(d.color0), color1_(d.color1), to_uv_(d.to_uv) {}
 
-  Rgb value(Vec2f uv) const override {
-    const Vec2f p = to_uv_(uv);
+  Rgb value(const TexturePoint& point) const override {
+    const Vec2f p = to_uv_(point.uv);
     return (fraction(p.x) > 0.5f) == (fraction(p.y) > 0.5f) ? color0_ : color1_;
   }
   Rgb mean_value() const override { return (color0_ + color1_) * 0.5f; }

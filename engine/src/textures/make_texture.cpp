@@ -8,6 +8,7 @@ namespace {
 struct Maker {
   std::unique_ptr<Texture> operator()(const CheckerboardDescription& d) const { return make_checkerboard(d); }
   std::unique_ptr<Texture> operator()(const BitmapDescription& d) const { return make_bitmap(d); }
+  std::unique_ptr<Texture> operator()(const MeshAttributeDescription& d) const { return make_mesh_attribute(d); }
 };
 
 }  // namespace

@@ -10,12 +10,20 @@
 
 namespace fluxfarm {
 
+// A place of a surface, as textures need to know it.
+struct TexturePoint {
+  Vec2f uv;
+  Rgb vertex_color;  // of a mesh that has colours, where a texture asks for them
+};
+
 class Texture {
  public:
   virtual ~Texture() = default;
 
   // At texture coordinates uv, any finite numbers; linear Rec.709, dimensionless.
-  virtual Rgb value(Vec2f uv) const = 0;
+  virtual Rgb value(const TexturePoint& point) const = 0;
+  // Change of the luminance per unit of u and of v; 0 for textures that change in steps. Bump maps ask for it.
+  virtual Vec2f luminance_gradient(Vec2f) const { return {}; }
   // Over the texture's own unit square, for heuristics. Takes time in proportion to an image's texels: ask while compiling a scene.
   virtual Rgb mean_value() const = 0;
 };

@@ -27,6 +27,11 @@ struct BitmapDescription {
   Transform to_uv;  // applied to (u, v, 0)
 };
 
-using TextureDescription = std::variant<CheckerboardDescription, BitmapDescription>;
+// Colours of the mesh's own vertices, times the scale.
+struct MeshAttributeDescription {
+  float scale = 1;
+};
+
+using TextureDescription = std::variant<CheckerboardDescription, BitmapDescription, MeshAttributeDescription>;
 
 }  // namespace fluxfarm

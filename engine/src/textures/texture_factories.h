@@ -11,5 +11,6 @@ namespace fluxfarm {
 
 std::unique_ptr<Texture> make_checkerboard(const CheckerboardDescription&);
 std::unique_ptr<Texture> make_bitmap(const BitmapDescription&);
+std::unique_ptr<Texture> make_mesh_attribute(const MeshAttributeDescription&);
 
 }  // namespace fluxfarm

@@ -22,6 +22,9 @@ class UvMap {
     return {rows_[0][0] * uv.x + rows_[0][1] * uv.y + rows_[0][2], rows_[1][0] * uv.x + rows_[1][1] * uv.y + rows_[1][2]};
   }
 
+  // A gradient by the mapped coordinates becomes one by u and v: the transposed linear part.
+  Vec2f gradient(Vec2f g) const { return {rows_[0][0] * g.x + rows_[1][0] * g.y, rows_[0][1] * g.x + rows_[1][1] * g.y}; }
+
  private:
   float rows_[2][3];
 };

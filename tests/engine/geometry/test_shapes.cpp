@@ -35,9 +35,9 @@ std::vector<LightCase> cases() {
   add("rectangle far", std::make_unique<Rectangle>(Vec3f{-0.4f, -1, 3}, Vec3f{1, 0, 0}, Vec3f{0, 2, 0}, true), Vec3f{0, 0, 0});
   add("parallelogram", std::make_unique<Rectangle>(Vec3f{-0.4f, -1, 1}, Vec3f{1, 0, 0.2f}, Vec3f{0.7f, 2, 0}, true),
       Vec3f{0, 0, 0});
-  TriangleMesh::Data far_mesh{{{-1, -1, 6}, {1, -1, 6.3f}, {0, 1, 5.8f}, {1.5f, 1, 6}}, {}, {}, {0, 2, 1, 1, 2, 3}};
+  TriangleMesh::Data far_mesh{{{-1, -1, 6}, {1, -1, 6.3f}, {0, 1, 5.8f}, {1.5f, 1, 6}}, {}, {}, {0, 2, 1, 1, 2, 3}, {}};
   add("mesh far", std::make_unique<TriangleMesh>(far_mesh, false, true), Vec3f{0, 0, 0});
-  TriangleMesh::Data mesh{{{-1, -1, 1}, {1, -1, 1.3f}, {0, 1, 0.8f}, {1.5f, 1, 1}}, {}, {}, {0, 2, 1, 1, 2, 3}};
+  TriangleMesh::Data mesh{{{-1, -1, 1}, {1, -1, 1.3f}, {0, 1, 0.8f}, {1.5f, 1, 1}}, {}, {}, {0, 2, 1, 1, 2, 3}, {}};
   add("mesh", std::make_unique<TriangleMesh>(mesh, false, true), Vec3f{0, 0, 0});
   return result;
 }

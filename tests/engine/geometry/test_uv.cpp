@@ -43,6 +43,67 @@ SphereDescription sphere(const Transform& to_world, Vec3f center, float radius) 
   return d;
 }
 
+// Moves along the derivatives and looks whether uv follows.
+template <typename Geometry>
+void expect_derivatives_lead_along_uv(const Geometry& geometry, Vec3f origin, bool flip_normals = false) {
+  RayAccelerator accelerator(1);
+  const auto shape = add_shape({"test shape", geometry, flip_normals, 0, {}}, false, accelerator);
+  accelerator.build();
+  const auto meet = [&](Vec3f from) {
+    const Ray ray{from, {0, 0, -1}};
+    Hit hit;
+    EXPECT_TRUE(accelerator.intersect(ray, hit));
+    return std::pair{shape->surface_point(ray, hit), hit};
+  };
+  const auto [point, hit] = meet(origin);
+  const Vec2f uv = shape->uv(point, hit);
+  const Shape::UvDerivatives d = shape->uv_derivatives(point, hit);
+  constexpr float kStep = 2e-3f;
+  for (const bool along_u : {true, false}) {
+    const Vec3f step = (along_u ? d.dp_du : d.dp_dv) * kStep;
+    const auto [p, h] = meet({point.position.x + step.x, point.position.y + step.y, origin.z});
+    const Vec2f moved = shape->uv(p, h);
+    EXPECT_NEAR((moved.x - uv.x) / kStep, along_u ? 1 : 0, 0.03) << along_u;
+    EXPECT_NEAR((moved.y - uv.y) / kStep, along_u ? 0 : 1, 0.03) << along_u;
+  }
+}
+
+TEST(UvDerivatives, LeadAlongUvOnEveryShape) {
+  const Transform stretched = Transform::rotate(0, 1, 0, 20) * Transform::scale(2, 0.7, 1);
+  expect_derivatives_lead_along_uv(RectangleDescription{stretched}, {0.3f, 0.2f, 5});
+  expect_derivatives_lead_along_uv(RectangleDescription{stretched}, {0.3f, 0.2f, 5}, true);
+  for (const bool flipped : {false, true}) {
+    expect_derivatives_lead_along_uv(DiskDescription{Transform::scale(2, 2, 2)}, {0.3f, 0.5f, 5}, flipped);
+    expect_derivatives_lead_along_uv(DiskDescription{Transform::scale(2, -2, 2)}, {0.3f, 0.5f, 5}, flipped);
+    const Transform turned = Transform::rotate(0, 1, 0, 30) * Transform::rotate(1, 0, 0, 40);
+    expect_derivatives_lead_along_uv(sphere(turned, {0.1f, 0, 0}, 2), {0.5f, 0.4f, 5}, flipped);
+    expect_derivatives_lead_along_uv(sphere(turned * Transform::scale(-1, 1, 1), {}, 2), {0.5f, 0.4f, 5}, flipped);
+  }
+  MeshDescription mesh;
+  mesh.positions = {{-1, -1, 0}, {1, -1, 0.5f}, {0, 1, 0}};
+  mesh.uvs = {{0.1f, 0.2f}, {0.3f, 0.9f}, {0.8f, 0.4f}};
+  mesh.indices = {0, 1, 2};
+  expect_derivatives_lead_along_uv(mesh, {0.1f, -0.2f, 5});
+  mesh.uvs.clear();
+  expect_derivatives_lead_along_uv(mesh, {0.1f, -0.2f, 5});
+}
+
+TEST(VertexColours, LieBetweenThoseOfTheCorners) {
+  MeshDescription mesh;
+  mesh.positions = {{-1, -1, 0}, {1, -1, 0}, {0, 1, 0}};
+  mesh.colors = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  mesh.indices = {0, 1, 2};
+  RayAccelerator accelerator(1);
+  const auto shape = add_shape({"test shape", mesh, false, 0, {}}, false, accelerator);
+  Hit hit;
+  hit.u = 0.2f;
+  hit.v = 0.3f;
+  const Rgb c = shape->vertex_color(hit);
+  EXPECT_NEAR(c.r, 0.5f, 1e-6f);
+  EXPECT_NEAR(c.g, 0.2f, 1e-6f);
+  EXPECT_NEAR(c.b, 0.3f, 1e-6f);
+}
+
 TEST(TextureCoordinates, RectangleRunsFromItsLowerLeftCorner) {
   expect_near(place_below(RectangleDescription{}, {0.3f, 0.5f, 1}).uv, {0.65f, 0.75f});
   expect_near(place_below(RectangleDescription{}, {-0.9f, 0.5f, 1}).uv, {0.05f, 0.75f});

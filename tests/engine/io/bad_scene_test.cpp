@@ -49,7 +49,7 @@ TEST(BadScene, UnknownPluginsAreErrors) {
   EXPECT_EQ(error_of([&] { folder.read_xml("<shape type=\"sphere\">\n<bsdf type=\"velvet\"/></shape>"); }),
             "scene.xml:3: unknown plugin: bsdf \"velvet\", expected one of: diffuse, twosided, dielectric, roughdielectric, "
             "conductor, "
-            "roughconductor, plastic, roughplastic");
+            "roughconductor, plastic, roughplastic, principled, thindielectric, null, mask, blendbsdf, normalmap, bumpmap");
   EXPECT_EQ(error_of([&] { folder.read_xml("<medium type=\"homogeneous\"/>"); }),
             "scene.xml:2: unknown plugin: medium \"homogeneous\"; no medium is supported yet");
   EXPECT_EQ(error_of([&] { folder.read_xml("<integrator type=\"volpath\"/>"); }),

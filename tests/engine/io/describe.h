@@ -85,11 +85,32 @@ class Describer {
     write(m.plastic);
     write(m.roughness);
   }
+  void write(const PrincipledDescription& m) {
+    write("principled", m.base_color);
+    out_ << m.eta << " " << m.base_color_texture;
+    for (const ScalarParameter& p : {m.roughness, m.anisotropic, m.metallic, m.spec_trans, m.spec_tint, m.sheen, m.sheen_tint,
+                                     m.flatness, m.clearcoat, m.clearcoat_gloss}) {
+      out_ << " " << p.factor << " " << p.texture;
+    }
+    out_ << "\n";
+  }
+  void write(const ThinDielectricDescription& m) { write(m.dielectric); }
+  void write(const NullDescription&) { out_ << "null\n"; }
+  void write(const MaskDescription& m) {
+    out_ << "mask " << m.material << " " << m.opacity.factor << " " << m.opacity.texture << "\n";
+  }
+  void write(const BlendDescription& m) {
+    out_ << "blend " << m.first << " " << m.second << " " << m.weight.factor << " " << m.weight.texture << "\n";
+  }
+  void write(const NormalMapDescription& m) { out_ << "normals " << m.material << " " << m.normals_texture << "\n"; }
+  void write(const BumpMapDescription& m) { out_ << "bumps " << m.material << " " << m.height_texture << " " << m.scale << "\n"; }
+  void write(const MeshAttributeDescription& t) { out_ << "vertex_color " << t.scale << "\n"; }
   void write(const TwosidedDescription& m) { out_ << "twosided " << m.front << " " << m.back << "\n"; }
   void write(const MeshDescription& mesh) {
     for (const Vec3f p : mesh.positions) write("v", p);
     for (const Vec3f n : mesh.normals) write("n", n);
     for (const Vec2f uv : mesh.uvs) out_ << "uv " << uv.x << " " << uv.y << "\n";
+    for (const Rgb c : mesh.colors) write("c", c);
     for (const std::uint32_t i : mesh.indices) out_ << i << " ";
     out_ << "\n";
   }

@@ -74,7 +74,7 @@ TEST(Materials, ReflectancesLieBetweenZeroAndOne) {
             "scene.xml:2: <spectrum> value = \"400:0.5, 700:0.7\": spectra by wavelength are not supported, expected one "
             "number, or use <rgb>");
   EXPECT_EQ(material_error(folder, "<bsdf type=\"diffuse\">\n<texture type=\"marble\" name=\"reflectance\"/></bsdf>"),
-            "scene.xml:3: unknown plugin: texture \"marble\", expected one of: bitmap, checkerboard");
+            "scene.xml:3: unknown plugin: texture \"marble\", expected one of: bitmap, checkerboard, mesh_attribute");
 }
 
 TEST(Materials, TwosidedTakesOneOrTwoOpaqueMaterials) {

@@ -121,6 +121,41 @@ TEST(WhiteFurnace, SingleScatteringLosesWhatQuadraturePredicts) {
   }
 }
 
+// The table of engine/docs/theory.md: what white rough surfaces return of the light from a direction, metal and glass (index 1.5,
+// from outside; reflected and refracted flux).
+struct Returned {
+  float alpha, cosine;
+  float metal_beckmann, metal_ggx, glass_beckmann, glass_ggx;
+};
+constexpr Returned kReturned[] = {
+    {0.1f, 1.00f, 1.000f, 0.988f, 1.000f, 0.999f}, {0.1f, 0.50f, 1.000f, 0.969f, 1.000f, 0.992f},
+    {0.1f, 0.15f, 0.929f, 0.883f, 0.953f, 0.933f}, {0.3f, 1.00f, 1.000f, 0.877f, 1.000f, 0.988f},
+    {0.3f, 0.50f, 0.924f, 0.818f, 0.978f, 0.947f}, {0.3f, 0.15f, 0.916f, 0.827f, 0.949f, 0.868f},
+    {0.5f, 1.00f, 0.943f, 0.688f, 0.997f, 0.968f}, {0.5f, 0.50f, 0.871f, 0.686f, 0.966f, 0.883f},
+    {0.5f, 0.15f, 0.924f, 0.755f, 0.954f, 0.738f}, {0.7f, 1.00f, 0.749f, 0.504f, 0.987f, 0.941f},
+    {0.7f, 0.50f, 0.834f, 0.566f, 0.952f, 0.801f}, {0.7f, 0.15f, 0.920f, 0.666f, 0.907f, 0.601f},
+    {1.0f, 1.00f, 0.462f, 0.307f, 0.966f, 0.893f}, {1.0f, 0.50f, 0.754f, 0.409f, 0.903f, 0.673f},
+    {1.0f, 0.15f, 0.890f, 0.534f, 0.779f, 0.440f},
+};
+
+float returned(bool glass, const Roughness& roughness, float cosine) {
+  DielectricDescription d;
+  d.eta = 1.5f;
+  const auto bsdf =
+      glass ? make(RoughDielectricDescription{d, roughness}) : make(RoughConductorDescription{perfect_mirror(), roughness});
+  return sampled_albedo(*bsdf, direction(cosine, 1.1f)).g;
+}
+
+TEST(WhiteFurnace, RoughSurfacesReturnWhatTheTableSays) {
+  for (const Returned& row : kReturned) {
+    SCOPED_TRACE("alpha " + std::to_string(row.alpha) + " cosine " + std::to_string(row.cosine));
+    EXPECT_NEAR(returned(false, beckmann(row.alpha), row.cosine), row.metal_beckmann, 0.003);
+    EXPECT_NEAR(returned(false, ggx(row.alpha), row.cosine), row.metal_ggx, 0.003);
+    EXPECT_NEAR(returned(true, beckmann(row.alpha), row.cosine), row.glass_beckmann, 0.003);
+    EXPECT_NEAR(returned(true, ggx(row.alpha), row.cosine), row.glass_ggx, 0.003);
+  }
+}
+
 // Twin: a furnace that expects 1 is wrong for rough metals, and the prediction of a neighbouring roughness is told apart.
 TEST(WhiteFurnaceTwin, LossIsNotSmallAndDependsOnRoughness) {
   const auto bsdf = make(RoughConductorDescription{perfect_mirror(), ggx(0.5f)});

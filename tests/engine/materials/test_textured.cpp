@@ -70,7 +70,7 @@ class Textured {
   explicit Textured(const MaterialDescription& d, const TextureDescription& texture = halves())
       : textures_(make_textures({texture})), bsdfs_(make_bsdfs({d})), materials_(make_textured_materials({d}, bsdfs_, textures_)) {}
 
-  const Bsdf& at(Vec2f uv) { return materials_[0]->at(uv, space_); }
+  const Bsdf& at(Vec2f uv) { return materials_[0]->at({.texture = {.uv = uv}}, space_); }
   bool has_texture() const { return materials_[0] != nullptr; }
 
  private:

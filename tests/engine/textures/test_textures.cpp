@@ -37,9 +37,32 @@ TEST(Bitmap, WrapsAndFiltersAsMitsubaDoes) {
     for (std::size_t i = 0; i < std::size(kPlaces); ++i) {
       SCOPED_TRACE(::testing::Message() << "filter " << static_cast<int>(c.filter) << " wrap " << static_cast<int>(c.wrap) << " at "
                                         << kPlaces[i].x << ", " << kPlaces[i].y);
-      EXPECT_NEAR(bitmap->value(kPlaces[i]).g, c.expected[i], 2e-6f);
+      EXPECT_NEAR(bitmap->value({kPlaces[i]}).g, c.expected[i], 2e-6f);
     }
   }
+}
+
+TEST(Bitmap, GradientIsTheSlopeOfTheBilinearSurface) {
+  const Transform turned = Transform::rotate(0, 0, 1, 30) * Transform::scale(1.5, 0.7, 1);
+  for (const TextureWrap wrap : {TextureWrap::kRepeat, TextureWrap::kMirror, TextureWrap::kClamp}) {
+    const auto bitmap = make(BitmapDescription{grey_image(), TextureFilter::kBilinear, wrap, turned});
+    for (const Vec2f uv : {Vec2f{0.31f, 0.42f}, {-0.4f, 0.3f}, {0.9f, 1.3f}, {0.55f, -0.21f}}) {
+      constexpr float kStep = 1e-3f;
+      const auto slope = [&](Vec2f d) {
+        const Vec2f above{uv.x + d.x * kStep, uv.y + d.y * kStep}, below{uv.x - d.x * kStep, uv.y - d.y * kStep};
+        return (bitmap->value({above}).g - bitmap->value({below}).g) / (2 * kStep);
+      };
+      const Vec2f g = bitmap->luminance_gradient(uv);
+      EXPECT_NEAR(g.x, slope({1, 0}), 2e-3f) << static_cast<int>(wrap) << " at " << uv.x << ", " << uv.y;
+      EXPECT_NEAR(g.y, slope({0, 1}), 2e-3f) << static_cast<int>(wrap) << " at " << uv.x << ", " << uv.y;
+    }
+  }
+  const auto steps = make(BitmapDescription{grey_image(), TextureFilter::kNearest, TextureWrap::kRepeat, {}});
+  EXPECT_EQ(steps->luminance_gradient({0.3f, 0.3f}).x, 0);
+}
+
+TEST(MeshAttribute, ShowsTheColourOfTheVertices) {
+  EXPECT_EQ(make(MeshAttributeDescription{0.5f})->value({{0.3f, 0.3f}, {0.2f, 0.4f, 1}}), Rgb(0.1f, 0.2f, 0.5f));
 }
 
 TEST(Bitmap, BilinearIsTheWeightedMeanOfFourTexels) {
@@ -61,7 +84,7 @@ TEST(Bitmap, KeepsColoursApart) {
 
 TEST(Bitmap, TransformsTextureCoordinatesInTheirPlane) {
   const auto at = [](const Transform& to_uv, Vec2f uv) {
-    return make(BitmapDescription{grey_image(), TextureFilter::kNearest, TextureWrap::kRepeat, to_uv})->value(uv).g;
+    return make(BitmapDescription{grey_image(), TextureFilter::kNearest, TextureWrap::kRepeat, to_uv})->value({uv}).g;
   };
   const Transform third = Transform::translate(1.0 / 3, 0, 0);
   EXPECT_EQ(at(third, {0.1f, 0.1f}), 0.2f);

@@ -28,7 +28,7 @@ struct PathVertex {
     wo.z *= side;
     bsdf = back ? surface->back : surface->front;
     if (surface->textured) [[unlikely]]
-      look_up(scene, hit, back, space);
+      look_up(scene, hit, back, side, space);
   }
 
   // Where a ray towards `direction` (world) may start without meeting its own surface.
@@ -38,9 +38,19 @@ struct PathVertex {
   }
 
  private:
-  void look_up(const Scene& scene, const Hit& hit, bool back, BsdfSpace& space) {
+  void look_up(const Scene& scene, const Hit& hit, bool back, float side, BsdfSpace& space) {
     const TexturedMaterial* material = scene.textured_material(hit.shape, back);
-    if (material != nullptr) bsdf = &material->at(surface->shape->uv(point, hit), space);
+    if (material == nullptr) return;
+    MaterialPoint place{.texture = {.uv = surface->shape->uv(point, hit)}};
+    if (surface->vertex_colored) place.texture.vertex_color = surface->shape->vertex_color(hit);
+    if (surface->bumpy) {
+      const Shape::UvDerivatives d = surface->shape->uv_derivatives(point, hit);
+      place.dp_du = frame.to_local(d.dp_du);
+      place.dp_dv = frame.to_local(d.dp_dv);
+      place.geometric_normal = frame.to_local(point.geometric_normal);
+      place.geometric_normal.z *= side;  // as before the frame was turned to the side of wo
+    }
+    bsdf = &material->at(place, space);
   }
 
   void align(Vec3f tangent) {

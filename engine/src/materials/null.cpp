@@ -1,0 +1,22 @@
+// No surface: all light passes straight on. For shapes that only carry a light or mark a border.
+#include "materials/bsdf_factories.h"
+#include "materials/directions.h"
+
+namespace fluxfarm {
+namespace {
+
+class Null final : public Bsdf {
+ public:
+  BsdfValue value(const Vec3f&, const Vec3f&) const override { return {}; }
+  std::optional<BsdfSample> sample(const Vec3f& wo, float, Vec2f) const override { return straight_on(wo, Rgb{1.0f}); }
+  Rgb albedo(const Vec3f&) const override { return Rgb{1.0f}; }
+  bool has_continuous_lobe() const override { return false; }
+  bool chooses_lobe() const override { return false; }
+  bool transmits() const override { return true; }
+};
+
+}  // namespace
+
+std::unique_ptr<Bsdf> make_null() { return std::make_unique<Null>(); }
+
+}  // namespace fluxfarm

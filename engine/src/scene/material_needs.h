@@ -1,0 +1,23 @@
+// What a material, with all that it holds, needs to know of the places where it is asked. A scene computes no more than that.
+#pragma once
+
+#include <cstddef>
+
+#include "scene/description.h"
+
+namespace fluxfarm {
+
+struct MaterialNeeds {
+  bool anisotropic = false;     // two roughnesses somewhere
+  bool normal_maps = false;     // or bump maps
+  bool tangents = false;        // for either
+  bool uvs = false;             // some texture lies over uv
+  bool uv_derivatives = false;  // for bump maps
+  bool vertex_colors = false;
+  bool masks = false;  // light goes straight through, in part or everywhere
+};
+
+// `material`: index into the description's materials, which do not contain themselves.
+MaterialNeeds material_needs(const SceneDescription& scene, std::size_t material);
+
+}  // namespace fluxfarm

@@ -1,0 +1,46 @@
+// What a scene computes at a hit follows from its materials: no more than they need.
+#include <gtest/gtest.h>
+
+#include "scene/material_needs.h"
+
+namespace fluxfarm {
+namespace {
+
+MaterialNeeds needs(const std::vector<MaterialDescription>& materials) {
+  SceneDescription scene;
+  scene.materials = materials;
+  scene.textures = {CheckerboardDescription{}, MeshAttributeDescription{}};
+  return material_needs(scene, 0);
+}
+
+TEST(MaterialNeeds, AreNothingForConstantMaterials) {
+  const MaterialNeeds n = needs({TwosidedDescription{1, 2}, DiffuseDescription{}, PrincipledDescription{}});
+  EXPECT_FALSE(n.anisotropic || n.normal_maps || n.tangents || n.uvs || n.uv_derivatives || n.vertex_colors || n.masks);
+}
+
+TEST(MaterialNeeds, AreThoseOfAllThatIsHeld) {
+  DiffuseDescription painted;
+  painted.reflectance_texture = 1;
+  const MaterialNeeds n = needs({MaskDescription{1, {0.5f}}, BlendDescription{2, 3, {1, 0}}, painted, DiffuseDescription{}});
+  EXPECT_TRUE(n.masks && n.uvs && n.vertex_colors);
+  EXPECT_FALSE(n.tangents || n.uv_derivatives);
+}
+
+TEST(MaterialNeeds, OfNormalMapsAreTangentsAndOfBumpMapsDerivativesToo) {
+  const MaterialNeeds normals = needs({NormalMapDescription{1, 0}, DiffuseDescription{}});
+  EXPECT_TRUE(normals.normal_maps && normals.tangents && normals.uvs);
+  EXPECT_FALSE(normals.uv_derivatives || normals.anisotropic);
+  EXPECT_TRUE(needs({BumpMapDescription{1, 0, 1}, DiffuseDescription{}}).uv_derivatives);
+}
+
+TEST(MaterialNeeds, OfTwoRoughnessesAreTangents) {
+  RoughConductorDescription brushed;
+  brushed.roughness.alpha_u = 0.3f;
+  EXPECT_TRUE(needs({brushed}).anisotropic);
+  PrincipledDescription principled;
+  principled.anisotropic = {0.2f};
+  EXPECT_TRUE(needs({principled}).tangents);
+}
+
+}  // namespace
+}  // namespace fluxfarm
