@@ -121,6 +121,8 @@ MaterialDescription read_simple(const PluginNode& node, TextureReader& textures)
     DiffuseDescription diffuse;
     diffuse.reflectance = read_colour(properties, textures, "reflectance", Rgb(0.5f), diffuse.reflectance_texture);
     result = diffuse;
+  } else if (node.type == "null") {
+    result = NullDescription{};
   } else if (node.type == "dielectric") {
     result = read_dielectric(properties, textures);
   } else if (node.type == "roughdielectric") {
@@ -143,7 +145,8 @@ MaterialDescription read_simple(const PluginNode& node, TextureReader& textures)
 }
 
 bool transmits(const MaterialDescription& material) {
-  return std::holds_alternative<DielectricDescription>(material) || std::holds_alternative<RoughDielectricDescription>(material);
+  return std::holds_alternative<DielectricDescription>(material) || std::holds_alternative<RoughDielectricDescription>(material) ||
+         std::holds_alternative<NullDescription>(material);
 }
 
 }  // namespace

@@ -52,6 +52,7 @@ struct Maker {
     return has_texture(d.plastic) ? make_textured_rough_plastic(d, textures) : nullptr;
   }
   Result operator()(const TwosidedDescription&) const { return nullptr; }
+  Result operator()(const NullDescription&) const { return nullptr; }
 
   TintedDescription tinted_dielectric(const DielectricDescription& d) const {
     return {&base, texture_of(textures, d.specular_reflectance_texture), texture_of(textures, d.specular_transmittance_texture)};

@@ -74,8 +74,11 @@ struct TwosidedDescription {
   int back = 0;
 };
 
+// No surface at all: light passes straight through. Bounds a medium.
+struct NullDescription {};
+
 using MaterialDescription =
     std::variant<DiffuseDescription, DielectricDescription, ConductorDescription, RoughConductorDescription,
-                 RoughDielectricDescription, PlasticDescription, RoughPlasticDescription, TwosidedDescription>;
+                 RoughDielectricDescription, PlasticDescription, RoughPlasticDescription, TwosidedDescription, NullDescription>;
 
 }  // namespace fluxfarm

@@ -30,6 +30,8 @@ std::string plan_json(const Scene& scene) {
         {"directional_emitters", census.directional_emitters},
         {"environment", census.environment},
         {"environment_map", census.environment_map},
+        {"media", census.media},
+        {"null_boundaries", census.null_boundaries},
         {"delta_materials", census.delta_materials}}},
       {"parts",
        {part("lens", scene.camera().has_lens(), scene.camera().has_lens() ? "a sensor with an aperture" : "a pinhole"),
@@ -39,6 +41,12 @@ std::string plan_json(const Scene& scene) {
         part("environment map", census.environment_map, census.environment_map ? "an envmap" : "no envmap"),
         part("tangent frames", census.anisotropic_materials,
              census.anisotropic_materials ? "a material with two roughnesses" : "no anisotropic material"),
+        part("media", census.media > 0 || census.null_boundaries,
+             census.media > 0         ? (census.media == 1 ? "1 medium" : std::to_string(census.media) + " media")
+             : census.null_boundaries ? "no medium, but surfaces that light passes"
+                                      : "no medium"),
+        part("media channels", census.coloured_media,
+             census.coloured_media ? "a medium whose extinction has a colour" : "no extinction has a colour"),
         part("textures", census.textures > 0, count(census.textures, "texture")),
         part("shading normals", census.shading_normals,
              census.shading_normals ? "a mesh with normals" : "all surfaces flat or exact")}}};
