@@ -17,17 +17,19 @@ ENGINE = {
     "textures": {"support", "math"},
     "materials": SHADING | {"textures"},
     "emitters": SHADING,
+    "media": SHADING,
     "accel": SHADING,
-    "scene": SHADING | {"textures", "materials", "emitters", "accel"},
-    "integrators": SHADING | {"textures", "materials", "emitters", "accel", "scene"},
-    "io": {"support", "math", "film", "scene", "textures", "materials", "sampling"},
-    "worker": {*SHADING, "textures", "materials", "emitters", "accel", "scene", "integrators", "film", "io"},
+    "scene": SHADING | {"textures", "materials", "emitters", "media", "accel"},
+    "integrators": SHADING | {"textures", "materials", "emitters", "media", "accel", "scene"},
+    "io": {"support", "math", "film", "scene", "textures", "materials", "media", "sampling"},
+    "worker": {*SHADING, "textures", "materials", "emitters", "media", "accel", "scene", "integrators", "film", "io"},
 }
 ENGINE["apps"] = {*ENGINE["worker"], "worker"}
 # Of these rooms io may use the plain descriptions only.
 IO_HEADERS = {
     "scene": {"scene/description.h"},
     "materials": {"materials/material_description.h"},
+    "media": {"media/medium_description.h"},
     "textures": {"textures/texture_description.h", "textures/texture_image.h"},
     "sampling": {"sampling/pixel_filter.h"},
 }

@@ -1,5 +1,6 @@
 #include "integrators/integrator.h"
 #include "integrators/path/path_integrator.h"
+#include "integrators/path/volume_path_integrator.h"
 #include "support/error.h"
 
 namespace fluxfarm {
@@ -9,7 +10,13 @@ std::unique_ptr<Integrator> make_integrator(const std::string& name, const Scene
   if (wanted != "path" && wanted != "auto") {
     throw SettingError("integrator = \"" + wanted + "\", expected path or auto");
   }
-  auto integrator = std::make_unique<PathIntegrator>();
+  const Census& census = scene.census();
+  std::unique_ptr<Integrator> integrator;
+  if (census.media > 0 || census.null_boundaries) {
+    integrator = std::make_unique<VolumePathIntegrator>();
+  } else {
+    integrator = std::make_unique<PathIntegrator>();
+  }
   integrator->prepare(scene);
   return integrator;
 }

@@ -24,9 +24,9 @@ constexpr Tag kTags[] = {
     {"texture", PluginKind::kTexture},
     {"shape", PluginKind::kShape},
     {"emitter", PluginKind::kEmitter},
+    {"medium", PluginKind::kMedium},
+    {"phase", PluginKind::kPhase},
     {"ref", PluginKind::kReference},
-    {"medium", PluginKind::kUnsupported},
-    {"phase", PluginKind::kUnsupported},
     {"volume", PluginKind::kUnsupported},
     {"subsurface", PluginKind::kUnsupported},
 };
@@ -82,6 +82,11 @@ constexpr KnownPlugin kKnownPlugins[] = {
     {"bitmap", PluginKind::kTexture},
     {"checkerboard", PluginKind::kTexture},
     {"mesh_attribute", PluginKind::kTexture},
+    {"volpath", PluginKind::kIntegrator},
+    {"volpathmis", PluginKind::kIntegrator},
+    {"homogeneous", PluginKind::kMedium},
+    {"isotropic", PluginKind::kPhase},
+    {"hg", PluginKind::kPhase},
 };
 
 std::string known_types(PluginKind kind) {

@@ -28,6 +28,8 @@ enum class PluginKind {
   kTexture,
   kShape,
   kEmitter,
+  kMedium,
+  kPhase,
   kReference,
   kUnsupported
 };

@@ -89,16 +89,22 @@ int read_sampler(const PluginNode& sampler) {
 
 }  // namespace
 
-void read_sensor(const PluginNode& sensor, SceneDescription& scene) {
+void read_sensor(const PluginNode& sensor, MediumReader& media, SceneDescription& scene) {
   Properties properties(sensor);
   scene.camera = read_camera(sensor.type, properties);
   properties.finish();
-  bool has_film = false, has_sampler = false;
+  bool has_film = false, has_sampler = false, has_medium = false;
   for (const PluginNode& child : sensor.children) {
-    bool* seen = child.kind == PluginKind::kFilm ? &has_film : child.kind == PluginKind::kSampler ? &has_sampler : nullptr;
-    if (!seen || *seen) fail_nested(sensor, child, "one film and one sampler");
+    const bool medium = child.kind == PluginKind::kMedium || child.kind == PluginKind::kReference;
+    bool* seen = child.kind == PluginKind::kFilm      ? &has_film
+                 : child.kind == PluginKind::kSampler ? &has_sampler
+                 : medium                             ? &has_medium
+                                                      : nullptr;
+    if (!seen || *seen) fail_nested(sensor, child, "one film, one sampler and one medium");
     *seen = true;
-    if (child.kind == PluginKind::kFilm) {
+    if (medium) {
+      scene.camera.medium = media.read(child);
+    } else if (child.kind == PluginKind::kFilm) {
       scene.film = read_film(child);
     } else {
       scene.samples_per_pixel = read_sampler(child);
@@ -111,10 +117,12 @@ MethodDescription read_integrator(const PluginNode& integrator) {
   check_no_children(integrator);
   Properties properties(integrator);
   MethodDescription method;
-  method.integrator = integrator.type;
+  // With or without media: whether there are any is seen in the scene.
+  method.integrator = "path";
   method.max_depth = static_cast<int>(properties.integer("max_depth", -1, kInt32));
   method.rr_depth = static_cast<int>(properties.integer("rr_depth", 5, {1, 2147483647}));
   method.hide_emitters = properties.boolean("hide_emitters", false);
+  if (integrator.type == "volpathmis") properties.ignore({"use_spectral_mis"});
   properties.finish();
   return method;
 }

@@ -8,6 +8,7 @@
 #include "io/mesh_ply.h"
 #include "io/properties.h"
 #include "io/read_emitter.h"
+#include "io/text.h"
 #include "io/transform_checks.h"
 #include "support/error.h"
 
@@ -104,11 +105,23 @@ RectangleDescription read_rectangle(Properties& properties) {
   return {to_world};
 }
 
-// The bsdf and the emitter inside the shape.
-void read_nested(const PluginNode& node, MaterialReader& materials, ShapeDescription& shape) {
+void read_medium_of(const PluginNode& node, const PluginNode& child, MediumReader& media, ShapeDescription& shape) {
+  if (child.name != "interior" && child.name != "exterior") {
+    throw SceneError(child.place, title(node) + " holds a " + title(child) + " named " + in_quotes(child.name) +
+                                      ", expected the name interior or exterior");
+  }
+  int& side = child.name == "interior" ? shape.interior_medium : shape.exterior_medium;
+  if (side != kNoMedium) throw SceneError(child.place, title(node) + " has a second medium named " + in_quotes(child.name));
+  side = media.read(child);
+}
+
+// The bsdf, the emitter and the media inside the shape.
+void read_nested(const PluginNode& node, MaterialReader& materials, MediumReader& media, ShapeDescription& shape) {
   bool has_material = false;
   for (const PluginNode& child : node.children) {
-    if (child.kind == PluginKind::kBsdf || child.kind == PluginKind::kReference) {
+    if (is_medium_of_shape(child)) {
+      read_medium_of(node, child, media, shape);
+    } else if (child.kind == PluginKind::kBsdf || child.kind == PluginKind::kReference) {
       if (has_material) fail_nested(node, child, "one bsdf");
       shape.material = materials.read(child);
       has_material = true;
@@ -116,7 +129,7 @@ void read_nested(const PluginNode& node, MaterialReader& materials, ShapeDescrip
       if (shape.emitted_radiance) fail_nested(node, child, "one emitter");
       shape.emitted_radiance = read_area_emitter(child, node);
     } else {
-      fail_nested(node, child, "one bsdf and one emitter");
+      fail_nested(node, child, "one bsdf, one emitter and two media");
     }
   }
   // As in Mitsuba: grey, or black if the shape is a light.
@@ -125,7 +138,7 @@ void read_nested(const PluginNode& node, MaterialReader& materials, ShapeDescrip
 
 }  // namespace
 
-ShapeDescription read_shape(const PluginNode& node, const Bundle& bundle, MaterialReader& materials,
+ShapeDescription read_shape(const PluginNode& node, const Bundle& bundle, MaterialReader& materials, MediumReader& media,
                             std::vector<std::string>& warnings) {
   Properties properties(node);
   ShapeDescription shape;
@@ -141,7 +154,7 @@ ShapeDescription read_shape(const PluginNode& node, const Bundle& bundle, Materi
     shape.geometry = read_mesh(node, properties, bundle, warnings);
   }
   properties.finish();
-  read_nested(node, materials, shape);
+  read_nested(node, materials, media, shape);
   return shape;
 }
 

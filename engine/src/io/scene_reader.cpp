@@ -36,6 +36,17 @@ void check_unused(const PluginNode& scene, const PluginsById& plugins, const Bun
   }
 }
 
+// A medium that nothing refers to would silently be nowhere. A phase function must be right, used or not.
+void check_media_used(const PluginNode& scene, const MediumReader& media) {
+  for (const PluginNode& child : scene.children) {
+    if (child.kind == PluginKind::kPhase) read_phase(child);
+    if (child.kind == PluginKind::kMedium && !media.has_read(child)) {
+      throw SceneError(child.place, title(child) + " fills nothing, expected a shape or the sensor that refers to it" +
+                                        (child.id.empty() ? "; it needs an id for that" : ""));
+    }
+  }
+}
+
 bool is_black(const PointEmitterDescription& point) { return point.intensity.is_black(); }
 bool is_black(const SpotEmitterDescription& spot) { return spot.intensity.is_black(); }
 bool is_black(const DirectionalEmitterDescription& light) { return light.irradiance.is_black(); }
@@ -69,12 +80,13 @@ SceneDescription build(const PluginNode& root, const Bundle& bundle) {
   const PluginsById plugins = plugins_by_id(root);
   TextureReader textures(plugins, bundle, TextureReader::Images::kRead, scene.textures);
   MaterialReader materials(plugins, textures, scene.materials);
+  MediumReader media(plugins, scene.media);
   const PluginNode* sensor = nullptr;
   const PluginNode* integrator = nullptr;
   const PluginNode* envmap = nullptr;
   for (const PluginNode& child : root.children) {
     switch (child.kind) {
-      case PluginKind::kShape: scene.shapes.push_back(read_shape(child, bundle, materials, scene.warnings)); break;
+      case PluginKind::kShape: scene.shapes.push_back(read_shape(child, bundle, materials, media, scene.warnings)); break;
       case PluginKind::kEmitter:
         if (child.type == "envmap" && envmap)
           throw SceneError(child.place, "the scene has a second envmap; the first is at " + envmap->place);
@@ -82,7 +94,9 @@ SceneDescription build(const PluginNode& root, const Bundle& bundle) {
         scene.emitters.push_back(read_scene_emitter(child, bundle));
         break;
       case PluginKind::kBsdf:
-      case PluginKind::kTexture: break;  // read when a shape or a material refers to it
+      case PluginKind::kTexture:
+      case PluginKind::kMedium:
+      case PluginKind::kPhase: break;  // read when something refers to it
       case PluginKind::kSensor:
         if (sensor)
           scene.warnings.push_back(child.place + ": the scene has more than one sensor; the one at " + sensor->place + " is used");
@@ -92,13 +106,14 @@ SceneDescription build(const PluginNode& root, const Bundle& bundle) {
         if (integrator) throw SceneError(child.place, "the scene has a second integrator; the first is at " + integrator->place);
         integrator = &child;
         break;
-      default: fail_nested(root, child, "integrator, sensor, bsdf, texture, shape and emitter");
+      default: fail_nested(root, child, "integrator, sensor, bsdf, texture, medium, phase, shape and emitter");
     }
   }
   drop_unused_colors(scene);
   check_unused(root, plugins, bundle, materials, textures);
   if (!sensor) throw SceneError(root.place, "the scene has no sensor, expected one, as in <sensor type=\"perspective\">");
-  read_sensor(*sensor, scene);
+  read_sensor(*sensor, media, scene);
+  check_media_used(root, media);
   if (integrator) scene.method = read_integrator(*integrator);
   if (!has_light(scene)) scene.warnings.push_back(root.place + ": no light: the image will be black");
   return scene;

@@ -94,7 +94,7 @@ struct ThinDielectricDescription {
   DielectricDescription dielectric;
 };
 
-// Passes everything.
+// No surface at all: light passes straight through. Bounds a medium.
 struct NullDescription {};
 
 // The materials that these hold are indices into the same list.

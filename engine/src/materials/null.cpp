@@ -1,4 +1,4 @@
-// No surface: all light passes straight on. For shapes that only carry a light or mark a border.
+// No surface: all light passes straight through, unchanged. Bounds a medium whose index of refraction is that around it.
 #include "materials/bsdf_factories.h"
 #include "materials/directions.h"
 

@@ -16,6 +16,7 @@
 #include "math/rgb.h"
 #include "math/transform.h"
 #include "math/vec.h"
+#include "media/medium_description.h"
 #include "sampling/pixel_filter.h"
 #include "textures/texture_description.h"
 
@@ -55,6 +56,10 @@ struct ShapeDescription {
   bool flip_normals = false;            // swaps front and back; the compiled scene applies it, the reader does not
   int material = 0;                     // index into SceneDescription::materials
   std::optional<Rgb> emitted_radiance;  // area emitter on the front side
+  // Indices into SceneDescription::media. With either, a ray that leaves the surface goes into the one on its side; with none, it
+  // stays in the medium in which it came.
+  int interior_medium = kNoMedium;  // behind the front side
+  int exterior_medium = kNoMedium;  // before the front side
 };
 
 // ---------------------------------------------------------------- emitters without a shape
@@ -114,6 +119,7 @@ struct CameraDescription {
   float far_clip = 1e4f;
   float aperture_radius = 0;  // m; 0 is a pinhole
   float focus_distance = 1;   // m along the view axis, to the plane that a lens shows sharply
+  int medium = kNoMedium;     // in which the camera stands: index into SceneDescription::media
 };
 
 struct MethodDescription {
@@ -126,6 +132,7 @@ struct MethodDescription {
 struct SceneDescription {
   std::vector<MaterialDescription> materials;
   std::vector<TextureDescription> textures;
+  std::vector<HomogeneousMediumDescription> media;
   std::vector<ShapeDescription> shapes;
   std::vector<EmitterDescription> emitters;
   CameraDescription camera;

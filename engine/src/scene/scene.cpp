@@ -1,5 +1,7 @@
 #include "scene/scene.h"
 
+#include <algorithm>
+
 #include "materials/make_bsdf.h"
 #include "materials/make_textured.h"
 #include "scene/make_emitter.h"
@@ -21,6 +23,8 @@ void check_colors(const std::string& shape, const std::vector<Rgb>& colors) {
   }
 }
 
+bool is_null(const MaterialDescription& material) { return std::holds_alternative<NullDescription>(material); }
+
 Bounds bounds_of(const std::vector<Scene::Surface>& surfaces) {
   Bounds bounds;
   for (const Scene::Surface& surface : surfaces) {
@@ -41,10 +45,14 @@ Scene::Scene(const SceneDescription& description, int threads)
       bsdfs_(make_bsdfs(description.materials)),
       textures_(make_textures(description.textures)),
       textured_materials_(make_textured_materials(description.materials, bsdfs_, textures_)),
+      media_(description.media.begin(), description.media.end()),
+      camera_medium_(medium(description.camera.medium)),
       accelerator_(std::make_unique<RayAccelerator>(threads)),
       warnings_(description.warnings) {
   census_.materials = bsdfs_.size();
   census_.textures = textures_.size();
+  census_.media = media_.size();
+  census_.coloured_media = std::any_of(media_.begin(), media_.end(), [](const HomogeneousMedium& m) { return m.coloured(); });
   surfaces_.reserve(description.shapes.size());
   for (const ShapeDescription& shape : description.shapes) {
     Surface surface;
@@ -54,6 +62,11 @@ Scene::Scene(const SceneDescription& description, int threads)
     surface.front = sides.front != nullptr ? sides.front : bsdf;
     surface.back = sides.back != nullptr ? sides.back : bsdf;
     surface.two_sided = sides.front != nullptr;
+    if (shape.interior_medium != kNoMedium && !bsdf->transmits()) {
+      warnings_.push_back(shape.name +
+                          ": the medium inside lies behind an opaque material, so no light reaches it; null, dielectric " +
+                          "and roughdielectric let light in");
+    }
     surface.has_continuous_lobe = bsdf->has_continuous_lobe();
     surface.chooses_lobe = bsdf->chooses_lobe();
     const MaterialNeeds needs = material_needs(description, static_cast<std::size_t>(shape.material));
@@ -67,7 +80,9 @@ Scene::Scene(const SceneDescription& description, int threads)
     census_.normal_maps |= needs.normal_maps;
     census_.vertex_colors |= needs.vertex_colors;
     census_.masks |= needs.masks;
-    census_.delta_materials |= !surface.has_continuous_lobe && !shape.emitted_radiance;
+    const bool null = is_null(description.materials[static_cast<std::size_t>(shape.material)]);
+    census_.null_boundaries |= null;
+    census_.delta_materials |= !surface.has_continuous_lobe && !shape.emitted_radiance && !null;
     const auto* mesh = dynamic_cast<const TriangleMesh*>(surface.shape.get());
     if (needs.vertex_colors && (mesh == nullptr || mesh->data().colors.empty())) {
       throw SceneError(shape.name,
@@ -88,6 +103,11 @@ Scene::Scene(const SceneDescription& description, int threads)
     surfaces_.push_back(std::move(surface));
   }
   accelerator_->build();
+  if (census_.media > 0 || census_.null_boundaries) {
+    for (const ShapeDescription& shape : description.shapes) {
+      boundaries_.push_back(boundary_of(shape, description.materials[static_cast<std::size_t>(shape.material)]));
+    }
+  }
 
   const float radius = bounds_of(surfaces_).radius();
   for (const EmitterDescription& emitter : description.emitters) {
@@ -116,6 +136,16 @@ Scene::Scene(const SceneDescription& description, int threads)
   census_.area_emitters = area_emitters_.size();
   census_.environment = environment_.has_value();
   census_.environment_map = environment_map_.emitter != nullptr;
+}
+
+Scene::Boundary Scene::boundary_of(const ShapeDescription& shape, const MaterialDescription& material) const {
+  const HomogeneousMedium* interior = medium(shape.interior_medium);
+  const HomogeneousMedium* exterior = medium(shape.exterior_medium);
+  return {interior, exterior, interior != nullptr || exterior != nullptr, is_null(material)};
+}
+
+const HomogeneousMedium* Scene::medium(int index) const {
+  return index == kNoMedium ? nullptr : &media_[static_cast<std::size_t>(index)];
 }
 
 Scene::TexturedSides Scene::textured_sides(const std::vector<MaterialDescription>& materials, std::size_t material) const {

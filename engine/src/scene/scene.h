@@ -12,6 +12,7 @@
 #include "emitters/envmap_emitter.h"
 #include "materials/bsdf.h"
 #include "materials/textured_material.h"
+#include "media/homogeneous_medium.h"
 #include "scene/camera.h"
 #include "scene/description.h"
 #include "textures/make_texture.h"
@@ -31,6 +32,9 @@ struct Census {
   bool vertex_colors = false;          // a texture shows them
   bool masks = false;                  // some material lets light straight through a part of the surface, or all of it
   bool shading_normals = false;        // some mesh has normals of its own
+  std::size_t media = 0;
+  bool coloured_media = false;   // the extinction of some medium differs between the channels
+  bool null_boundaries = false;  // light passes some surface as if it was not there
 };
 
 class Scene {
@@ -62,6 +66,21 @@ class Scene {
     const TexturedSides& sides = textured_sides_[shape];
     return back ? sides.back : sides.front;
   }
+  // What lies on the two sides of a surface, in a scene with media or null boundaries.
+  struct Boundary {
+    const HomogeneousMedium* interior = nullptr;  // behind the front side; nullptr: vacuum
+    const HomogeneousMedium* exterior = nullptr;  // before it
+    bool separates = false;                       // false: no media of its own, a ray stays in the one in which it came
+    bool invisible = false;                       // a null boundary
+
+    // The medium of a ray that leaves `point` of this surface, having come in `current`.
+    const HomogeneousMedium* towards(Vec3f direction, const SurfacePoint& point, const HomogeneousMedium* current) const {
+      if (!separates) return current;
+      return dot(direction, point.geometric_normal) > 0 ? exterior : interior;
+    }
+  };
+  const Boundary& boundary(std::uint32_t shape) const { return boundaries_[shape]; }
+  const HomogeneousMedium* camera_medium() const { return camera_medium_; }  // nullptr: vacuum
   const RayAccelerator& accelerator() const { return *accelerator_; }
   const EmitterChoice& emitters() const { return emitter_choice_; }
   // Radiance of the constant environment; empty without one.
@@ -83,6 +102,8 @@ class Scene {
     const TexturedMaterial* front = nullptr;
     const TexturedMaterial* back = nullptr;
   };
+  Boundary boundary_of(const ShapeDescription& shape, const MaterialDescription& material) const;
+  const HomogeneousMedium* medium(int index) const;
   TexturedSides textured_sides(const std::vector<MaterialDescription>& materials, std::size_t material) const;
 
   FilmDescription film_;
@@ -93,6 +114,9 @@ class Scene {
   Textures textures_;
   std::vector<std::unique_ptr<TexturedMaterial>> textured_materials_;  // one for each material; null without texture
   std::vector<TexturedSides> textured_sides_;                          // one for each surface
+  std::vector<HomogeneousMedium> media_;
+  const HomogeneousMedium* camera_medium_ = nullptr;
+  std::vector<Boundary> boundaries_;  // one for each surface; empty without media and null boundaries
   std::vector<Surface> surfaces_;
   std::vector<std::unique_ptr<AreaEmitter>> area_emitters_;
   std::vector<std::unique_ptr<Emitter>> free_emitters_;  // those without a shape

@@ -13,7 +13,7 @@ namespace fluxfarm {
 // A place of a surface, as textures need to know it.
 struct TexturePoint {
   Vec2f uv;
-  Rgb vertex_color;  // of a mesh that has colours, where a texture asks for them
+  Rgb vertex_color{};  // of a mesh that has colours, where a texture asks for them
 };
 
 class Texture {

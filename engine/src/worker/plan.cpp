@@ -30,6 +30,8 @@ std::string plan_json(const Scene& scene) {
         {"directional_emitters", census.directional_emitters},
         {"environment", census.environment},
         {"environment_map", census.environment_map},
+        {"media", census.media},
+        {"null_boundaries", census.null_boundaries},
         {"delta_materials", census.delta_materials},
         {"masks", census.masks},
         {"normal_maps", census.normal_maps},
@@ -46,6 +48,12 @@ std::string plan_json(const Scene& scene) {
                                           : "no anisotropic material"),
         part("normal maps", census.normal_maps, census.normal_maps ? "a normalmap or bumpmap" : "no normalmap, no bumpmap"),
         part("vertex colours", census.vertex_colors, census.vertex_colors ? "a mesh_attribute in use" : "no mesh_attribute in use"),
+        part("media", census.media > 0 || census.null_boundaries,
+             census.media > 0         ? (census.media == 1 ? "1 medium" : std::to_string(census.media) + " media")
+             : census.null_boundaries ? "no medium, but surfaces that light passes"
+                                      : "no medium"),
+        part("media channels", census.coloured_media,
+             census.coloured_media ? "a medium whose extinction has a colour" : "no extinction has a colour"),
         part("textures", census.textures > 0, count(census.textures, "texture")),
         part("shading normals", census.shading_normals,
              census.shading_normals ? "a mesh with normals" : "all surfaces flat or exact")}}};

@@ -50,10 +50,10 @@ TEST(BadScene, UnknownPluginsAreErrors) {
             "scene.xml:3: unknown plugin: bsdf \"velvet\", expected one of: diffuse, twosided, dielectric, roughdielectric, "
             "conductor, "
             "roughconductor, plastic, roughplastic, principled, thindielectric, null, mask, blendbsdf, normalmap, bumpmap");
-  EXPECT_EQ(error_of([&] { folder.read_xml("<medium type=\"homogeneous\"/>"); }),
-            "scene.xml:2: unknown plugin: medium \"homogeneous\"; no medium is supported yet");
-  EXPECT_EQ(error_of([&] { folder.read_xml("<integrator type=\"volpath\"/>"); }),
-            "scene.xml:2: unknown plugin: integrator \"volpath\", expected one of: path");
+  EXPECT_EQ(error_of([&] { folder.read_xml("<volume type=\"gridvolume\"/>"); }),
+            "scene.xml:2: unknown plugin: volume \"gridvolume\"; no volume is supported yet");
+  EXPECT_EQ(error_of([&] { folder.read_xml("<integrator type=\"bdpt\"/>"); }),
+            "scene.xml:2: unknown plugin: integrator \"bdpt\", expected one of: path, volpath, volpathmis");
   EXPECT_EQ(error_of([&] { folder.read_xml("<shape type=\"diffuse\"/>"); }).find("scene.xml:2: unknown plugin: shape \"diffuse\""),
             0u);
   EXPECT_EQ(error_of([&] {
@@ -72,7 +72,7 @@ TEST(BadScene, UnknownParametersAndElementsAreErrors) {
   EXPECT_EQ(error_of([&] { folder.read_xml("<shape type=\"sphere\" colour=\"red\"/>"); }),
             "scene.xml:2: <shape> has no attribute \"colour\"; it takes type, id, name, version");
   EXPECT_EQ(error_of([&] { folder.read_xml("<shape type=\"sphere\"><film type=\"hdrfilm\"/></shape>"); }),
-            "scene.xml:2: shape \"sphere\" cannot hold a film \"hdrfilm\"; it takes one bsdf and one emitter");
+            "scene.xml:2: shape \"sphere\" cannot hold a film \"hdrfilm\"; it takes one bsdf, one emitter and two media");
   EXPECT_EQ(error_of([&] { folder.read_xml("hello"); }),
             "scene.xml:2: text \"hello\" between the elements, expected only elements");
 }

@@ -14,13 +14,16 @@ class Describer {
   std::string describe(const SceneDescription& scene) {
     for (const auto& material : scene.materials) std::visit([this](const auto& m) { write(m); }, material);
     for (const auto& texture : scene.textures) std::visit([this](const auto& t) { write(t); }, texture);
+    for (const auto& medium : scene.media) write(medium);
     for (const auto& shape : scene.shapes) {
-      out_ << "shape " << shape.name << " material " << shape.material << " flip " << shape.flip_normals << "\n";
+      out_ << "shape " << shape.name << " material " << shape.material << " flip " << shape.flip_normals << " media "
+           << shape.interior_medium << " " << shape.exterior_medium << "\n";
       if (shape.emitted_radiance) write("radiance", *shape.emitted_radiance);
       std::visit([this](const auto& g) { write(g); }, shape.geometry);
     }
     for (const auto& emitter : scene.emitters) std::visit([this](const auto& e) { write(e); }, emitter);
     write("camera", scene.camera.to_world);
+    out_ << "in medium " << scene.camera.medium << "\n";
     out_ << "fov " << static_cast<int>(scene.camera.fov_axis) << " " << scene.camera.fov_degrees << " clip "
          << scene.camera.near_clip << " " << scene.camera.far_clip << " lens " << scene.camera.aperture_radius << " "
          << scene.camera.focus_distance << "\nfilm " << scene.film.width << " " << scene.film.height << " crop "
@@ -105,6 +108,11 @@ class Describer {
   void write(const NormalMapDescription& m) { out_ << "normals " << m.material << " " << m.normals_texture << "\n"; }
   void write(const BumpMapDescription& m) { out_ << "bumps " << m.material << " " << m.height_texture << " " << m.scale << "\n"; }
   void write(const MeshAttributeDescription& t) { out_ << "vertex_color " << t.scale << "\n"; }
+  void write(const HomogeneousMediumDescription& m) {
+    write("sigma_t", m.sigma_t);
+    write("albedo", m.albedo);
+    out_ << "g " << m.asymmetry << "\n";
+  }
   void write(const TwosidedDescription& m) { out_ << "twosided " << m.front << " " << m.back << "\n"; }
   void write(const MeshDescription& mesh) {
     for (const Vec3f p : mesh.positions) write("v", p);

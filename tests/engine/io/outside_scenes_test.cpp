@@ -63,9 +63,12 @@ TEST_F(OutsideScenes, VeachAjarLoadsItsTextures) {
             3);
 }
 
-TEST_F(OutsideScenes, PluginsOfLaterAreNamed) {
-  EXPECT_EQ(error_of([] { read("glass-of-milk"); }),
-            "scene.xml:27: unknown plugin: medium \"homogeneous\"; no medium is supported yet");
+TEST_F(OutsideScenes, GlassOfMilk) {
+  const SceneDescription scene = read("glass-of-milk");
+  EXPECT_EQ(scene.media.size(), 1u);
+  EXPECT_TRUE(std::ranges::any_of(scene.materials, [](const MaterialDescription& material) {
+    return std::holds_alternative<BlendDescription>(material);
+  }));
 }
 
 }  // namespace

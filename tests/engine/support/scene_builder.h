@@ -41,7 +41,11 @@ class SceneBuilder {
   // A shape of that geometry; `radiance` above zero makes its front side emit.
   template <typename Geometry>
   SceneBuilder& shape(Geometry geometry, int material, float radiance = 0, bool flip_normals = false) {
-    ShapeDescription shape{"test shape", geometry, flip_normals, material, {}};
+    ShapeDescription shape;
+    shape.name = "test shape";
+    shape.geometry = geometry;
+    shape.flip_normals = flip_normals;
+    shape.material = material;
     if (radiance > 0) shape.emitted_radiance = Rgb{radiance};
     description_.shapes.push_back(shape);
     return *this;
@@ -70,6 +74,25 @@ class SceneBuilder {
         Transform::look_at(from, at, vertical ? std::array<double, 3>{0, 0, 1} : std::array<double, 3>{0, 1, 0});
     description_.camera.fov_degrees = 0.01f;
     description_.film.width = description_.film.height = 4;
+    return *this;
+  }
+  // Index of a new medium.
+  int medium(const HomogeneousMediumDescription& medium) {
+    description_.media.push_back(medium);
+    return static_cast<int>(description_.media.size()) - 1;
+  }
+  // Fills what lies behind the last shape.
+  SceneBuilder& interior(int medium) {
+    description_.shapes.back().interior_medium = medium;
+    return *this;
+  }
+  // The camera stands in it.
+  SceneBuilder& camera_in(int medium) {
+    description_.camera.medium = medium;
+    return *this;
+  }
+  SceneBuilder& near_clip(float distance) {
+    description_.camera.near_clip = distance;
     return *this;
   }
   SceneBuilder& max_depth(int depth) {

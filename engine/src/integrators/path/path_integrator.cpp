@@ -1,17 +1,15 @@
-// [Veach97] E. Veach, "Robust Monte Carlo Methods for Light Transport Simulation", PhD thesis, Stanford 1997.
 #include "integrators/path/path_integrator.h"
 
 #include <array>
 #include <limits>
 
+#include "integrators/path/multiple_importance.h"
 #include "integrators/path/path_vertex.h"
-#include "sampling/sampler.h"
+#include "integrators/path/pixel_groups.h"
 
 namespace fluxfarm {
 namespace {
 
-// Paths that advance together: at most one pass of one pixel.
-constexpr std::size_t kMaxPaths = kMaxSamplerBatch;
 // Dimensions of a path: the film first, then so many for each bounce.
 enum BounceDimension : std::uint32_t { kEmitterPoint, kDirection, kEmitterChoice, kLobe, kRoulette, kBounceDimensions };
 constexpr std::uint32_t kFilmDimension = 0;
@@ -37,13 +35,6 @@ struct PendingLight {
   Rgb radiance;
   SampleResult* result = nullptr;
 };
-
-// Power heuristic with exponent two for one sample of each of two techniques.                      [Veach97, section 9.2.4]
-float power_heuristic(float pdf, float other_pdf) {
-  if (!(pdf > 0)) return 0;
-  const float ratio = other_pdf / pdf;
-  return 1 / (1 + ratio * ratio);
-}
 
 // The paths of one pixel, advanced bounce by bounce.
 class PathGroup {
@@ -171,23 +162,12 @@ class PathGroup {
     const BsdfValue scatter = vertex.bsdf->value(vertex.wo, wi);
     if (scatter.f.is_black()) return;
 
-    const std::optional<Ray> shadow = shadow_ray(vertex, *light);
+    const std::optional<Ray> shadow = shadow_ray(vertex.origin_towards(light->wi), *light);
     if (!shadow) return;
     shadow_rays_[lights_] = *shadow;
     const float weight = light->delta ? 1.0f : power_heuristic(light->pdf_solid_angle * choice.probability, scatter.pdf);
     const Rgb arriving = scatter.f * light->weight * (std::fabs(wi.z) * weight / choice.probability);
     pending_[lights_++] = {path_[i].throughput * arriving, path_[i].result};
-  }
-
-  // Runs between points that are moved off both surfaces. Empty: they coincide.
-  static std::optional<Ray> shadow_ray(const PathVertex& vertex, const EmitterSample& light) {
-    const Vec3f from = vertex.origin_towards(light.wi);
-    if (light.distance == kDistant) return Ray{from, light.wi};
-    const Vec3f to = light.delta ? light.position : offset_point(light.position, light.normal);
-    const Vec3f segment = to - from;
-    const float distance = length(segment);
-    if (!(distance > 0)) return std::nullopt;
-    return Ray{from, segment / distance, 0, distance * (1 - 1e-5f)};
   }
 
   void gather_lights(bool coherent) {
@@ -230,15 +210,8 @@ class PathGroup {
 void PathIntegrator::radiance(std::span<const CameraSample> samples, std::uint64_t seed, std::span<SampleResult> results,
                               RayQueries& queries) const {
   PathGroup group(*scene_, queries);
-  for (std::size_t begin = 0; begin < samples.size();) {
-    std::size_t end = begin + 1;
-    while (end < samples.size() && end - begin < kMaxPaths && samples[end].x == samples[begin].x &&
-           samples[end].y == samples[begin].y) {
-      ++end;
-    }
-    group.trace(samples.subspan(begin, end - begin), seed, results.subspan(begin, end - begin));
-    begin = end;
-  }
+  for_each_pixel_group(samples, results,
+                       [&](std::span<const CameraSample> pixel, std::span<SampleResult> out) { group.trace(pixel, seed, out); });
 }
 
 }  // namespace fluxfarm

@@ -1,0 +1,30 @@
+// What estimators of direct light share: the weights of two techniques, and the way to a chosen point of a light.
+//
+// [Veach97] E. Veach, "Robust Monte Carlo Methods for Light Transport Simulation", PhD thesis, Stanford 1997.
+#pragma once
+
+#include <optional>
+
+#include "emitters/emitter.h"
+#include "math/ray.h"
+
+namespace fluxfarm {
+
+// Power heuristic with exponent two for one sample of each of two techniques.                      [Veach97, section 9.2.4]
+inline float power_heuristic(float pdf, float other_pdf) {
+  if (!(pdf > 0)) return 0;
+  const float ratio = other_pdf / pdf;
+  return 1 / (1 + ratio * ratio);
+}
+
+// The ray from a point, already moved off its surface, to one that is moved off the light. Empty: they coincide.
+inline std::optional<Ray> shadow_ray(Vec3f from, const EmitterSample& light) {
+  if (light.distance == kDistant) return Ray{from, light.wi};
+  const Vec3f to = light.delta ? light.position : offset_point(light.position, light.normal);
+  const Vec3f segment = to - from;
+  const float distance = length(segment);
+  if (!(distance > 0)) return std::nullopt;
+  return Ray{from, segment / distance, 0, distance * (1 - 1e-5f)};
+}
+
+}  // namespace fluxfarm

@@ -1,0 +1,44 @@
+// Light on its way to the paths of a group: shadow rays that pass null boundaries and are dimmed by media.
+#pragma once
+
+#include <array>
+
+#include "accel/ray_queries.h"
+#include "integrators/path/pixel_groups.h"
+#include "scene/scene.h"
+
+namespace fluxfarm {
+
+class ShadowRays {
+ public:
+  ShadowRays(const Scene& scene, RayQueries& queries) : scene_(scene), queries_(queries) {}
+
+  // `radiance` arrives through `ray`, which starts in `medium`, if nothing is in between. At most kMaxPaths at a time.
+  void add(const Ray& ray, const HomogeneousMedium* medium, Rgb radiance, SampleResult& result) {
+    rays_[size_] = ray;
+    lights_[size_++] = {radiance, medium, &result};
+  }
+
+  // Adds what gets through to the results, and forgets it.
+  void gather(bool coherent);
+
+ private:
+  struct Light {
+    Rgb radiance;
+    const HomogeneousMedium* medium = nullptr;
+    SampleResult* result = nullptr;
+  };
+
+  void gather_unobstructed(bool coherent);
+  bool pass(std::size_t i);
+
+  const Scene& scene_;
+  RayQueries& queries_;
+  std::size_t size_ = 0;
+  std::array<Ray, kMaxPaths> rays_;
+  std::array<Light, kMaxPaths> lights_;
+  std::array<Hit, kMaxPaths> hits_;
+  std::array<bool, kMaxPaths> occluded_;
+};
+
+}  // namespace fluxfarm

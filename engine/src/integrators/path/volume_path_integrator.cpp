@@ -1,0 +1,280 @@
+#include "integrators/path/volume_path_integrator.h"
+
+#include <array>
+#include <limits>
+
+#include "integrators/path/multiple_importance.h"
+#include "integrators/path/path_vertex.h"
+#include "integrators/path/pixel_groups.h"
+#include "integrators/path/shadow_rays.h"
+#include "media/channel_mis.h"
+#include "sampling/sampler.h"
+
+namespace fluxfarm {
+namespace {
+
+// Dimensions of a path: the film first, then so many for each step, which ends at a surface, also a null one, or at a collision.
+enum StepDimension : std::uint32_t { kEmitterPoint, kDirection, kEmitterChoice, kLobe, kRoulette, kDistance, kStepDimensions };
+constexpr std::uint32_t kFilmDimension = 0;
+// Counted from the other end, so that they move no dimension of the steps.
+constexpr std::uint32_t kLensDimension = 0xffffffffu, kChannelDimension = 0xfffffffeu;
+constexpr std::uint32_t dimension_of(int step, StepDimension use) {
+  return 1 + static_cast<std::uint32_t>(step) * kStepDimensions + use;
+}
+
+// Survival at surfaces is capped as PathIntegrator caps it. A path in a white medium collides hundreds of times without losing
+// anything: ending it with 5 % at each collision would leave a few paths with enormous weights, so the cap there only makes sure
+// that a path in an endless medium ends.
+constexpr float kMaxSurvivalAtSurface = 0.95f, kMaxSurvivalInMedium = 0.999f;
+
+struct VolumePath {
+  Rgb throughput{1.0f};
+  ChannelMis channels;
+  int channel = 0;                            // chooses the distances
+  int depth = 0;                              // bounces behind it
+  const HomogeneousMedium* medium = nullptr;  // around the ray
+  float eta_scale = 1;                        // undoes the radiance scaling of refraction in the roulette's view of the throughput
+  // Of the last bounce, against which light that the ray finds is weighted.
+  bool delta = true;          // next-event estimation could not have found the last direction
+  float direction_pdf = 0;    // of that direction, sr^-1; unused while `delta`
+  Vec3f bounce_origin;        // where next-event estimation stood
+  float bounce_distance = 0;  // from there to the ray's origin through null boundaries, m
+  SampleResult* result = nullptr;
+};
+
+// The paths of one pixel, advanced step by step.
+class VolumePathGroup {
+ public:
+  VolumePathGroup(const Scene& scene, RayQueries& queries)
+      : scene_(scene),
+        method_(scene.method()),
+        max_depth_(method_.max_depth < 0 ? std::numeric_limits<int>::max() : method_.max_depth),
+        queries_(queries),
+        shadow_rays_(scene, queries) {}
+
+  void trace(std::span<const CameraSample> samples, std::uint64_t seed, std::span<SampleResult> results) {
+    start(samples, seed, results);
+    for (int step = 0; paths_ > 0; ++step) {
+      sampler_.draw_2d(dimension_of(step, kDirection), u_direction_);
+      if (!scene_.emitters().empty()) sampler_.draw_2d(dimension_of(step, kEmitterPoint), u_emitter_);
+      for (std::size_t i = 0; i < paths_; ++i) sample_distance(i, step);
+      queries_.intersect({rays_.data(), paths_}, {hits_.data(), paths_}, step == 0);
+      std::size_t alive = 0;
+      for (std::size_t i = 0; i < paths_; ++i) {
+        // A survivor moves down to the first free place, which is never above its own.
+        if (!advance(i, step)) continue;
+        if (alive != i) {
+          path_[alive] = path_[i];
+          rays_[alive] = rays_[i];
+          sampler_.move(i, alive);
+        }
+        ++alive;
+      }
+      paths_ = alive;
+      sampler_.resize(alive);
+      shadow_rays_.gather(step == 0);
+    }
+  }
+
+ private:
+  void start(std::span<const CameraSample> samples, std::uint64_t seed, std::span<SampleResult> results) {
+    sampler_.clear();
+    for (const CameraSample& sample : samples) sampler_.add(seed, sample.x, sample.y, sample.index);
+    const Camera& camera = scene_.camera();
+    sampler_.draw_2d(kFilmDimension, u_direction_);
+    std::array<Vec2f, kMaxPaths>& u_lens = u_emitter_;  // not in use yet
+    if (camera.has_lens()) sampler_.draw_2d(kLensDimension, u_lens);
+    paths_ = samples.size();
+    for (std::size_t i = 0; i < paths_; ++i) {
+      results[i] = {};
+      path_[i] = VolumePath{};
+      path_[i].medium = scene_.camera_medium();
+      path_[i].result = &results[i];
+      if (scene_.census().coloured_media)
+        path_[i].channel = std::min(static_cast<int>(3 * sampler_.draw_1d(kChannelDimension, i)), 2);
+      const Vec2f offset = scene_.pixel_filter().sample(u_direction_[i]);
+      const float x = static_cast<float>(samples[i].x) + 0.5f + offset.x;
+      const float y = static_cast<float>(samples[i].y) + 0.5f + offset.y;
+      rays_[i] = camera.has_lens() ? camera.ray(x, y, u_lens[i]) : camera.ray(x, y);
+      // Media begin at the near plane, as surfaces do.
+      Ray& ray = rays_[i];
+      ray = {ray.origin + ray.t_min * ray.direction, ray.direction, 0, ray.t_max - ray.t_min};
+    }
+  }
+
+  // Ends the ray at its next collision, if that comes before its own end.
+  void sample_distance(std::size_t i, int step) {
+    collides_[i] = false;
+    const HomogeneousMedium* medium = path_[i].medium;
+    if (medium == nullptr) return;
+    const float distance = medium->sample_distance(path_[i].channel, sampler_.draw_1d(dimension_of(step, kDistance), i));
+    collides_[i] = distance < rays_[i].t_max;
+    rays_[i].t_max = std::min(distance, rays_[i].t_max);
+  }
+
+  // Takes path i through the end of its ray and leaves its next ray in place of the last. False when the path has ended.
+  bool advance(std::size_t i, int step) {
+    VolumePath& path = path_[i];
+    const Ray& ray = rays_[i];
+    const Hit& hit = hits_[i];
+    const bool hits = hit.shape != Hit::kNone;
+    if (!hits && collides_[i]) return scatter_in_medium(i, step);
+    if (path.medium != nullptr) path.throughput *= path.channels.pass(*path.medium, hits ? hit.t : ray.t_max);
+    if (path.throughput.is_black()) return false;
+    if (!hits) {
+      if (shows_emitters(path)) add_environment(path, ray.direction);
+      return false;
+    }
+    const PathVertex vertex(scene_, ray, hit, bsdf_space_);
+    if (vertex.surface->emitter != nullptr && shows_emitters(path)) add_emission(path, vertex, ray, hit);
+    const Scene::Boundary& boundary = scene_.boundary(hit.shape);
+    if (boundary.invisible) return cross(i, vertex, boundary);
+    return scatter_at_surface(i, step, vertex, boundary);
+  }
+
+  // Straight on through a null boundary.
+  bool cross(std::size_t i, const PathVertex& vertex, const Scene::Boundary& boundary) {
+    VolumePath& path = path_[i];
+    const Vec3f direction = rays_[i].direction;
+    path.bounce_distance += hits_[i].t;
+    path.medium = boundary.towards(direction, vertex.point, path.medium);
+    rays_[i] = {vertex.origin_towards(direction), direction};
+    return true;
+  }
+
+  bool scatter_in_medium(std::size_t i, int step) {
+    VolumePath& path = path_[i];
+    const Ray ray = rays_[i];
+    path.throughput *= path.channels.scatter(*path.medium, ray.t_max);
+    if (path.throughput.is_black() || path.depth + 1 >= max_depth_) return false;
+    const Vec3f position = ray.origin + ray.t_max * ray.direction;
+    const PhaseFunction& phase = path.medium->phase();
+    if (const std::optional<LightChoice> light = choose_light(i, step, position)) {
+      const float scattered = phase.value(ray.direction, light->sample.wi);
+      add_light(i, *light, position, path.medium, Rgb{scattered}, scattered);
+    }
+    const Vec3f direction = phase.sample(ray.direction, u_direction_[i]);
+    return bounce(i, step, {position, direction}, phase.value(ray.direction, direction), false, kMaxSurvivalInMedium);
+  }
+
+  bool scatter_at_surface(std::size_t i, int step, const PathVertex& vertex, const Scene::Boundary& boundary) {
+    VolumePath& path = path_[i];
+    if (path.depth == 0) note_first_hit(vertex, *path.result);
+    if (path.depth + 1 >= max_depth_) return false;
+    if (vertex.surface->has_continuous_lobe) {
+      if (const std::optional<LightChoice> light = choose_light(i, step, vertex.point.position)) {
+        const Vec3f wi = vertex.frame.to_local(light->sample.wi);
+        const BsdfValue scatter = vertex.bsdf->value(vertex.wo, wi);
+        add_light(i, *light, vertex.origin_towards(light->sample.wi), boundary.towards(light->sample.wi, vertex.point, path.medium),
+                  scatter.f * std::fabs(wi.z), scatter.pdf);
+      }
+    }
+    const float u_lobe = vertex.surface->chooses_lobe ? sampler_.draw_1d(dimension_of(step, kLobe), i) : 0.0f;
+    const std::optional<BsdfSample> scatter = vertex.bsdf->sample(vertex.wo, u_lobe, u_direction_[i]);
+    if (!scatter) return false;
+    path.throughput *= scatter->weight;
+    path.eta_scale *= scatter->eta * scatter->eta;
+    if (path.throughput.is_black()) return false;
+    const Vec3f direction = vertex.frame.to_world(scatter->wi);
+    path.medium = boundary.towards(direction, vertex.point, path.medium);
+    return bounce(i, step, {vertex.origin_towards(direction), direction}, scatter->pdf, scatter->delta, kMaxSurvivalAtSurface);
+  }
+
+  // Lets the path go on along `ray`, or ends it by Russian roulette.
+  bool bounce(std::size_t i, int step, const Ray& ray, float direction_pdf, bool delta, float max_survival) {
+    VolumePath& path = path_[i];
+    path.direction_pdf = direction_pdf;
+    path.delta = delta;
+    path.bounce_origin = ray.origin;
+    path.bounce_distance = 0;
+    rays_[i] = ray;
+    if (++path.depth < method_.rr_depth) return true;
+    const float survival = std::min(max_component(path.throughput) * path.eta_scale, max_survival);
+    if (sampler_.draw_1d(dimension_of(step, kRoulette), i) >= survival) return false;
+    path.throughput *= 1 / survival;
+    return true;
+  }
+
+  bool shows_emitters(const VolumePath& path) const { return path.depth > 0 || !method_.hide_emitters; }
+
+  void note_first_hit(const PathVertex& vertex, SampleResult& result) const {
+    result.hit = true;
+    result.depth = scene_.camera().depth(vertex.point.position);
+    result.normal = vertex.wo.z < 0 ? -vertex.frame.n : vertex.frame.n;
+    result.albedo = vertex.bsdf->albedo(vertex.wo);
+  }
+
+  // Emission found by the last bounce, weighted against next-event estimation from there, which could have found it, too. The
+  // weights leave out the chance of getting there without a collision, for both alike.
+  static void add_emission(const VolumePath& path, const PathVertex& vertex, const Ray& ray, const Hit& hit) {
+    const Rgb emitted = vertex.surface->emitter->radiance(vertex.point, ray.direction);
+    if (emitted.is_black()) return;
+    float weight = 1;
+    if (!path.delta) {
+      const float pdf =
+          vertex.surface->shape->pdf(path.bounce_origin, vertex.point, hit.primitive, ray.direction, path.bounce_distance + hit.t);
+      weight = power_heuristic(path.direction_pdf, pdf * vertex.surface->choice_probability);
+    }
+    path.result->radiance += path.throughput * emitted * weight;
+  }
+
+  void add_environment(const VolumePath& path, Vec3f direction) const {
+    if (scene_.environment()) path.result->radiance += path.throughput * *scene_.environment();
+    const auto& [map, choice_probability] = scene_.environment_map();
+    if (map == nullptr) return;
+    const auto [radiance, pdf] = map->from(direction);
+    const float weight = path.delta ? 1.0f : power_heuristic(path.direction_pdf, pdf * choice_probability);
+    path.result->radiance += path.throughput * radiance * weight;
+  }
+
+  // Next-event estimation: one emitter, one point of it.
+  struct LightChoice {
+    EmitterSample sample;
+    float probability;  // of the emitter
+  };
+  std::optional<LightChoice> choose_light(std::size_t i, int step, Vec3f from) const {
+    const EmitterChoice& emitters = scene_.emitters();
+    if (emitters.empty()) return std::nullopt;
+    const float u_choice = emitters.single() ? 0.0f : sampler_.draw_1d(dimension_of(step, kEmitterChoice), i);
+    const EmitterChoice::Choice choice = emitters.sample(u_choice);
+    const std::optional<EmitterSample> sample = choice.emitter->sample(from, u_emitter_[i]);
+    if (!sample) return std::nullopt;
+    return LightChoice{*sample, choice.probability};
+  }
+
+  // `scattered`: phase function, or BSDF times cosine, towards the light, sr^-1; `pdf`: of sampling it there, sr^-1.
+  void add_light(std::size_t i, const LightChoice& light, Vec3f origin, const HomogeneousMedium* medium, Rgb scattered, float pdf) {
+    if (scattered.is_black()) return;
+    const std::optional<Ray> ray = shadow_ray(origin, light.sample);
+    if (!ray) return;
+    const float weight = light.sample.delta ? 1.0f : power_heuristic(light.sample.pdf_solid_angle * light.probability, pdf);
+    const Rgb arriving = scattered * light.sample.weight * (weight / light.probability);
+    shadow_rays_.add(*ray, medium, path_[i].throughput * arriving, *path_[i].result);
+  }
+
+  const Scene& scene_;
+  const MethodDescription& method_;
+  const int max_depth_;
+  RayQueries& queries_;
+  ShadowRays shadow_rays_;
+
+  std::size_t paths_ = 0;  // alive; the first so many entries of the arrays below
+  SamplerBatch sampler_;
+  std::array<Vec2f, kMaxPaths> u_direction_, u_emitter_;
+  std::array<VolumePath, kMaxPaths> path_;
+  std::array<Ray, kMaxPaths> rays_;
+  std::array<bool, kMaxPaths> collides_;  // unless the ray meets a surface before its end
+  std::array<Hit, kMaxPaths> hits_;
+  BsdfSpace bsdf_space_;  // of the vertex at hand
+};
+
+}  // namespace
+
+void VolumePathIntegrator::radiance(std::span<const CameraSample> samples, std::uint64_t seed, std::span<SampleResult> results,
+                                    RayQueries& queries) const {
+  VolumePathGroup group(*scene_, queries);
+  for_each_pixel_group(samples, results,
+                       [&](std::span<const CameraSample> pixel, std::span<SampleResult> out) { group.trace(pixel, seed, out); });
+}
+
+}  // namespace fluxfarm
