@@ -49,7 +49,7 @@ constexpr KnownPlugin kKnownPlugins[] = {
     {"disk", PluginKind::kShape},           {"area", PluginKind::kEmitter},        {"point", PluginKind::kEmitter},
     {"spot", PluginKind::kEmitter},         {"directional", PluginKind::kEmitter}, {"constant", PluginKind::kEmitter},
     {"envmap", PluginKind::kEmitter},       {"thinlens", PluginKind::kSensor},     {"bitmap", PluginKind::kTexture},
-    {"checkerboard", PluginKind::kTexture},
+    {"checkerboard", PluginKind::kTexture}, {"gltf", PluginKind::kShape},
 };
 
 std::string known_types(PluginKind kind) {

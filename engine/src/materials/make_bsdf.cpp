@@ -17,6 +17,7 @@ struct Maker {
   std::unique_ptr<Bsdf> operator()(const RoughDielectricDescription& d) const { return make_rough_dielectric(d); }
   std::unique_ptr<Bsdf> operator()(const PlasticDescription& d) const { return make_plastic(d); }
   std::unique_ptr<Bsdf> operator()(const RoughPlasticDescription& d) const { return make_rough_plastic(d); }
+  std::unique_ptr<Bsdf> operator()(const GltfDescription& d) const { return make_gltf(d); }
   std::unique_ptr<Bsdf> operator()(const TwosidedDescription&) const { return nullptr; }
 };
 

@@ -51,6 +51,7 @@ struct Maker {
   Result operator()(const RoughPlasticDescription& d) const {
     return has_texture(d.plastic) ? make_textured_rough_plastic(d, textures) : nullptr;
   }
+  Result operator()(const GltfDescription& d) const { return make_textured_gltf(d, textures); }
   Result operator()(const TwosidedDescription&) const { return nullptr; }
 
   TintedDescription tinted_dielectric(const DielectricDescription& d) const {

@@ -14,6 +14,7 @@ namespace fluxfarm {
 std::unique_ptr<TexturedMaterial> make_textured_rough_conductor(const RoughConductorDescription&, const Textures&);
 std::unique_ptr<TexturedMaterial> make_textured_plastic(const PlasticDescription&, const Textures&);
 std::unique_ptr<TexturedMaterial> make_textured_rough_plastic(const RoughPlasticDescription&, const Textures&);
+std::unique_ptr<TexturedMaterial> make_textured_gltf(const GltfDescription&, const Textures&);  // null without textures
 
 // The texture of that index, or null for kNoTexture.
 inline const Texture* texture_of(const Textures& textures, int index) {

@@ -1,5 +1,7 @@
 #include "scene/scene.h"
 
+#include <unordered_set>
+
 #include "materials/make_bsdf.h"
 #include "materials/make_textured.h"
 #include "scene/make_emitter.h"
@@ -12,6 +14,7 @@ bool is_anisotropic(const std::vector<MaterialDescription>& materials, const Mat
   const auto differs = [](const Roughness& r) { return r.alpha_u != r.alpha_v; };
   if (const auto* conductor = std::get_if<RoughConductorDescription>(&material)) return differs(conductor->roughness);
   if (const auto* dielectric = std::get_if<RoughDielectricDescription>(&material)) return differs(dielectric->roughness);
+  if (const auto* gltf = std::get_if<GltfDescription>(&material)) return gltf->anisotropy > 0;
   if (const auto* twosided = std::get_if<TwosidedDescription>(&material)) {
     return is_anisotropic(materials, materials[twosided->front]) || is_anisotropic(materials, materials[twosided->back]);
   }
@@ -43,9 +46,10 @@ Scene::Scene(const SceneDescription& description, int threads)
   census_.materials = bsdfs_.size();
   census_.textures = textures_.size();
   surfaces_.reserve(description.shapes.size());
+  std::unordered_set<const TriangleMesh*> counted;  // of those that instances share
   for (const ShapeDescription& shape : description.shapes) {
     Surface surface;
-    surface.shape = add_shape(shape, shape.emitted_radiance.has_value(), *accelerator_);
+    surface.shape = add_shape(shape, shape.emitted_radiance.has_value(), shared_meshes_, *accelerator_);
     const Bsdf* bsdf = bsdfs_[static_cast<std::size_t>(shape.material)].get();
     const Bsdf::Sides sides = bsdf->sides();
     surface.front = sides.front != nullptr ? sides.front : bsdf;
@@ -59,7 +63,11 @@ Scene::Scene(const SceneDescription& description, int threads)
     surface.textured = sides_with_textures.front != nullptr || sides_with_textures.back != nullptr;
     census_.anisotropic_materials |= surface.anisotropic;
     census_.delta_materials |= !surface.has_continuous_lobe && !shape.emitted_radiance;
-    if (const auto* mesh = dynamic_cast<const TriangleMesh*>(surface.shape.get())) {
+    const auto* instance = dynamic_cast<const MeshInstance*>(surface.shape.get());
+    const auto* mesh = instance != nullptr ? &instance->mesh() : dynamic_cast<const TriangleMesh*>(surface.shape.get());
+    census_.instances += instance != nullptr;
+    const bool first_use = instance == nullptr || counted.insert(mesh).second;
+    if (mesh != nullptr && first_use) {
       census_.triangles += mesh->triangles();
       census_.shading_normals |= !mesh->data().normals.empty();
       if (surface.textured && mesh->data().uvs.empty()) {
@@ -67,7 +75,7 @@ Scene::Scene(const SceneDescription& description, int threads)
       }
     }
     if (shape.emitted_radiance) {
-      area_emitters_.push_back(std::make_unique<AreaEmitter>(*surface.shape, *shape.emitted_radiance));
+      area_emitters_.push_back(std::make_unique<AreaEmitter>(*surface.shape, *shape.emitted_radiance, shape.emits_on_both_sides));
       surface.emitter = area_emitters_.back().get();
     }
     surfaces_.push_back(std::move(surface));

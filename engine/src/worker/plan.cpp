@@ -22,6 +22,7 @@ std::string plan_json(const Scene& scene) {
       {"census",
        {{"shapes", census.shapes},
         {"triangles", census.triangles},
+        {"instances", census.instances},
         {"materials", census.materials},
         {"textures", census.textures},
         {"area_emitters", census.area_emitters},
@@ -40,6 +41,7 @@ std::string plan_json(const Scene& scene) {
         part("tangent frames", census.anisotropic_materials,
              census.anisotropic_materials ? "a material with two roughnesses" : "no anisotropic material"),
         part("textures", census.textures > 0, count(census.textures, "texture")),
+        part("instances", census.instances > 0, count(census.instances, "instance") + " of shared meshes"),
         part("shading normals", census.shading_normals,
              census.shading_normals ? "a mesh with normals" : "all surfaces flat or exact")}}};
   return plan.dump();

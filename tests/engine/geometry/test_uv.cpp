@@ -16,7 +16,8 @@ struct Place {
 template <typename Geometry>
 Place place_below(const Geometry& geometry, Vec3f origin, bool flip_normals = false) {
   RayAccelerator accelerator(1);
-  const auto shape = add_shape({"test shape", geometry, flip_normals, 0, {}}, false, accelerator);
+  SharedMeshes shared;
+  const auto shape = add_shape({"test shape", geometry, flip_normals, 0, {}}, false, shared, accelerator);
   accelerator.build();
   const Ray ray{origin, {0, 0, -1}};
   Hit hit;
