@@ -1,15 +1,19 @@
 // glTF's metallic-roughness surface: diffuse or transmitting base under Schlick-Fresnel GGX, or metal; then sheen; then a clear coat.
 //
-//   dielectric = (1 - max F_d) [(1 - t) base / pi + t base T] + F_d S      F_d = Schlick from the index of refraction and `specular`
+//   dielectric = (1 - t) N base / pi + t (1 - max F_d) base T + F_d S      F_d = Schlick from the index of refraction and `specular`
 //   metal      = F_m S                                                     F_m = Schlick from the base colour
 //   f          = (1 - c F_c(wo)) (1 - c F_c(wi)) [sheen + E (mix(dielectric, metal, metallic))] + c F_c S_c
 //
-// S and S_c are GGX with separable Smith, T its refraction (a volume) or the mirror image of S (a thin pane), E what sheen leaves.
-// Both sides scatter alike, but for the inside of a volume, which has neither coat nor sheen. Where it differs from [glTF]: the coat and sheen dim what is below on the way in and out alike, so that the BSDF is reciprocal; the
-// interface of a volume has the exact Fresnel reflectance, since Schlick's knows no total reflection. Single scattering: loses energy
+// S and S_c are GGX with separable Smith, T its refraction (a volume) or the mirror image of S (a thin pane), E what sheen leaves,
+// N = (1 - max F_d(wo)) (1 - max F_d(wi)) / (1 - mean max F_d) what a smooth interface leaves to a diffuse base [Kelemen01].
+// Both sides scatter alike, but for the inside of a volume, which has neither coat nor sheen. Where it differs from [glTF]: N stands there for 1 - max F_d at the microfacet, which gains up to 29 % of energy at grazing
+// angles; the coat and sheen dim what is below on the way in and out alike, so that the BSDF is reciprocal; the interface of a volume has
+// the exact Fresnel reflectance, since Schlick's knows no total reflection. Single scattering: loses energy
 // with roughness.
 //
 // [glTF]     Khronos, "glTF 2.0 Specification", appendix B, and the KHR_materials_* extensions.
+// [Kelemen01] C. Kelemen and L. Szirmay-Kalos, "A Microfacet Based Coupled Specular-Matte BRDF Model with Importance Sampling",
+//            Eurographics 2001 short presentations.
 // [Schlick94] C. Schlick, "An Inexpensive BRDF Model for Physically-based Rendering", Eurographics 1994.
 // [Walter07] B. Walter et al., "Microfacet Models for Refraction through Rough Surfaces", EGSR 2007.
 #include "materials/bsdf_factories.h"
@@ -98,6 +102,7 @@ class Gltf final : public Bsdf {
   };
 
   bool is_inside(const Vec3f& w) const { return w.z < 0 && !thin_; }
+  bool has_exact_fresnel() const { return transmits() && !thin_; }
   bool has_sheen() const { return !sheen_.is_black(); }
 
   // Into the frame of the anisotropy and back.
@@ -112,11 +117,20 @@ class Gltf final : public Bsdf {
   // Of the dielectric part, as seen from outside or from within.
   Rgb dielectric_fresnel(float cosine, bool outside) const {
     if (ior_ == 0) return Rgb{1};
-    if (transmits() && !thin_) {
+    if (has_exact_fresnel()) {
       return min(specular_color_ * fresnel_dielectric(outside ? cosine : -cosine, ior_).reflectance, 1) * specular_;
     }
     const Rgb f0 = min(specular_color_ * sqr((1 - ior_) / (1 + ior_)), 1);
     return (f0 + (Rgb{1} - f0) * schlick_weight(cosine)) * specular_;
+  }
+
+  // N above.                                                                                              [Kelemen01]
+  float left_to_diffuse(float cos_o, float cos_i, bool outside) const {
+    const float left = (1 - max_component(dielectric_fresnel(cos_o, outside))) * (1 - max_component(dielectric_fresnel(cos_i, outside)));
+    if (ior_ == 0 || has_exact_fresnel()) return left;  // without the mean, which has no closed form: a little too dark
+    const float f0 = max_component(min(specular_color_ * sqr((1 - ior_) / (1 + ior_)), 1));
+    const float mean = (f0 + (1 - f0) / 21) * specular_;  // Schlick's, weighted by the cosine
+    return mean < 1 ? left / (1 - mean) : 0.0f;
   }
 
   float beneath_coat(const Vec3f& w) const { return is_inside(w) ? 1.0f : 1 - coat_ * coat_fresnel(std::abs(w.z)); }
@@ -132,7 +146,8 @@ class Gltf final : public Bsdf {
     const float cosine = std::abs(wo.z);
     const float coat = is_inside(wo) ? 0.0f : coat_ * coat_fresnel(cosine);
     const Rgb dielectric = dielectric_fresnel(cosine, wo.z > 0);
-    const float base = luminance(base_) * (1 - metallic_) * (1 - max_component(dielectric));
+    // Tilted microfacets let light through also where the smooth surface reflects all.
+    const float base = luminance(base_) * (1 - metallic_) * std::max(1 - max_component(dielectric), 0.1f);
     const float specular = luminance(dielectric) * (1 - metallic_) + luminance(metal_fresnel(cosine)) * metallic_;
     const float sheen = has_sheen() ? luminance(sheen_) : 0.0f;
     Lobes lobes{coat, (1 - coat) * specular, (1 - coat) * base * transmission_, (1 - coat) * sheen,
@@ -156,7 +171,7 @@ class Gltf final : public Bsdf {
     const float d = microfacets_.normal_density(*m), shape = 0.25f * d * microfacets_.masking_by_cosine(o);
     const Rgb fresnel = dielectric * (1 - metallic_) + metal_fresnel(cosine) * metallic_;
     v.f = fresnel * (shape * microfacets_.masking_by_cosine(i) * leaves);
-    v.f += base_ * ((1 - max_component(dielectric)) * (1 - transmission_) * (1 - metallic_) * kInvPi * leaves);
+    v.f += base_ * (left_to_diffuse(o.z, i.z, wo.z > 0) * (1 - transmission_) * (1 - metallic_) * kInvPi * leaves);
     v.pdf = lobes.specular * shape + (lobes.diffuse + lobes.sheen) * i.z * kInvPi;
     if (has_sheen() && !is_inside(wo)) {
       const float bound = std::max({1.0f, sheen_albedo(o.z), sheen_albedo(i.z)});
