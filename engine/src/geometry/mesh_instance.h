@@ -1,7 +1,7 @@
 // A triangle mesh placed in the world without a copy of it: many instances share one mesh in its own space.
 //
-// Corners are transformed at each hit in double precision and rounded once, so a hit has the geometry that a copied mesh would have.
-// Instances are no lights: sampling one by area would need a table for each transform. Emissive meshes are copied instead.
+// Corners are transformed at each hit in double precision and rounded once, so a hit has the geometry that a copied mesh would
+// have. Instances are no lights: sampling one by area would need a table for each transform. Emissive meshes are copied instead.
 #pragma once
 
 #include "geometry/triangle_mesh.h"

@@ -27,8 +27,8 @@ TriangleMesh::Corners TriangleMesh::corners(std::uint32_t triangle) const {
 Vec3f TriangleMesh::vertex_normal(const Hit& hit) const {
   if (data_.normals.empty()) return {};
   const std::uint32_t* index = data_.indices.data() + 3 * static_cast<std::size_t>(hit.primitive);
-  return side_ * ((1 - hit.u - hit.v) * data_.normals[index[0]] + hit.u * data_.normals[index[1]] +
-                  hit.v * data_.normals[index[2]]);
+  return side_ *
+         ((1 - hit.u - hit.v) * data_.normals[index[0]] + hit.u * data_.normals[index[1]] + hit.v * data_.normals[index[2]]);
 }
 
 SurfacePoint TriangleMesh::surface_point(const Ray&, const Hit& hit) const {

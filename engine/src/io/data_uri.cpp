@@ -44,8 +44,8 @@ std::string data_uri_bytes(std::string_view uri, const std::string& place) {
   for (std::size_t i = 0; i < text.size(); ++i) {
     const int digit = kDigits[static_cast<unsigned char>(text[i])];
     if (digit == kNoDigit)
-      throw SceneError(place, "character " + std::to_string(i) + " of the data is " + in_quotes(text.substr(i, 1)) +
-                                  ", expected base64");
+      throw SceneError(place,
+                       "character " + std::to_string(i) + " of the data is " + in_quotes(text.substr(i, 1)) + ", expected base64");
     group = group << 6 | static_cast<std::uint32_t>(digit);
     bits += 6;
     if (bits < 8) continue;

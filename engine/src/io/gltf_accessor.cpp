@@ -40,7 +40,8 @@ void check_type(const GltfObject& accessor, std::size_t components) {
 template <typename Target, typename Component>
 Target converted(Component value, bool normalized) {
   if constexpr (std::is_floating_point_v<Target> && std::is_integral_v<Component>) {
-    if (normalized) return std::max(static_cast<Target>(value) / static_cast<Target>(std::numeric_limits<Component>::max()), Target{-1});
+    if (normalized)
+      return std::max(static_cast<Target>(value) / static_cast<Target>(std::numeric_limits<Component>::max()), Target{-1});
   }
   return static_cast<Target>(value);
 }
@@ -86,7 +87,8 @@ void read_view(GltfFile& file, const GltfObject& object, std::uint64_t count, st
 
 // Values that replace some elements.
 template <typename Target>
-void apply_sparse(GltfFile& file, const GltfObject& accessor, std::size_t components, bool normalized, std::vector<Target>& elements) {
+void apply_sparse(GltfFile& file, const GltfObject& accessor, std::size_t components, bool normalized,
+                  std::vector<Target>& elements) {
   const std::optional<GltfObject> sparse = accessor.object("sparse");
   if (!sparse) return;
   const std::uint64_t count = sparse->required_count("count", elements.size() / components);

@@ -12,8 +12,8 @@ namespace {
 
 constexpr double kDegrees = 180 / M_PI;
 
-// Camera to world without the scale of the node, which glTF tells to ignore. glTF looks along -z with +x to the right; ours looks along
-// +z with +x to the left.
+// Camera to world without the scale of the node, which glTF tells to ignore. glTF looks along -z with +x to the right; ours looks
+// along +z with +x to the left.
 Transform camera_frame(const GltfPlaced& placed) {
   Transform::Matrix m = placed.to_world.matrix();
   for (std::size_t column = 0; column < 3; ++column) {

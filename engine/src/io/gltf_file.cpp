@@ -79,8 +79,8 @@ std::string_view GltfFile::split_binary(std::string_view bytes) {
     throw SceneError(name_, "is binary glTF of version " + std::to_string(integer_at(bytes, 4)) + ", expected 2");
   const std::size_t length = integer_at(bytes, 8);
   if (length > bytes.size()) {
-    throw SceneError(name_, "is cut off: it has " + std::to_string(bytes.size()) + " bytes, its header says " +
-                                std::to_string(length));
+    throw SceneError(name_,
+                     "is cut off: it has " + std::to_string(bytes.size()) + " bytes, its header says " + std::to_string(length));
   }
   std::string_view document;
   std::size_t offset = kHeaderBytes;
@@ -116,8 +116,8 @@ void GltfFile::check_document(std::vector<std::string>& warnings) const {
   for (const std::string& extension : required) {
     if (known_extensions().contains(extension)) continue;
     const auto& known = known_extensions();
-    throw SceneError(name_ + ": extensionsRequired", "the file requires " + in_quotes(extension) + ", which is not read; read are: " +
-                                                         joined({known.begin(), known.end()}));
+    throw SceneError(name_ + ": extensionsRequired", "the file requires " + in_quotes(extension) +
+                                                         ", which is not read; read are: " + joined({known.begin(), known.end()}));
   }
   for (const std::string& extension : texts(document, "extensionsUsed")) {
     if (!known_extensions().contains(extension))

@@ -16,7 +16,8 @@ bool is_inside(double value, const NumberRange& range) {
 
 std::string expected(const NumberRange& range) {
   if (!std::isfinite(range.min) && !std::isfinite(range.max)) return "a finite number";
-  if (!std::isfinite(range.max)) return std::string("a number ") + (range.open ? "greater than " : "of at least ") + number_text(range.min);
+  if (!std::isfinite(range.max))
+    return std::string("a number ") + (range.open ? "greater than " : "of at least ") + number_text(range.min);
   return "a number in " + std::string(range.open ? "(" : "[") + number_text(range.min) + ", " + number_text(range.max) +
          (range.open ? ")" : "]");
 }
@@ -140,9 +141,9 @@ std::vector<std::size_t> GltfObject::indices(const char* name, const char* array
   for (const JsonValue& element : *value->array()) {
     const auto* integer = std::get_if<std::int64_t>(&element.value);
     if (!integer || *integer < 0 || static_cast<std::uint64_t>(*integer) >= size) {
-      throw SceneError(place_ + "." + name + "[" + std::to_string(result.size()) + "]",
-                       "is " + described(element) + ", expected an index into " + array + ", which has " + std::to_string(size) +
-                           " elements");
+      throw SceneError(
+          place_ + "." + name + "[" + std::to_string(result.size()) + "]",
+          "is " + described(element) + ", expected an index into " + array + ", which has " + std::to_string(size) + " elements");
     }
     result.push_back(static_cast<std::size_t>(*integer));
   }

@@ -10,7 +10,8 @@ namespace {
 Vec3f direction(const GltfPlaced& placed) {
   const Vec3f axis = placed.to_world.vector({0, 0, -1});
   const float longest = std::max({std::abs(axis.x), std::abs(axis.y), std::abs(axis.z)});
-  if (!(longest > 0) || !std::isfinite(longest)) throw SceneError(placed.name, "the light points nowhere: its -z axis has no length");
+  if (!(longest > 0) || !std::isfinite(longest))
+    throw SceneError(placed.name, "the light points nowhere: its -z axis has no length");
   return normalize(axis / longest);
 }
 

@@ -13,7 +13,7 @@ struct GltfMaterial {
   int index = 0;                        // into the scene's materials
   std::optional<Rgb> emitted_radiance;  // W m^-2 sr^-1; a light
   bool double_sided = false;
-  int uv_set = 0;                      // TEXCOORD_n that its textures ask for
+  int uv_set = 0;                       // TEXCOORD_n that its textures ask for
   std::optional<Rgb> absorption_per_m;  // of the volume that it bounds, on its back side
 };
 

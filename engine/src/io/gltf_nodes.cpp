@@ -97,7 +97,8 @@ class NodeWalk {
     if (!to_world.is_finite()) throw SceneError(node.place(), "the transform to the world is not finite");
     const std::string name = node.has("name") ? node.place() + " " + in_quotes(node.text("name", "")) : node.place();
     if (const auto mesh = node.index("mesh", "meshes", file_.size("meshes"))) place_mesh(node, {*mesh, to_world, name});
-    if (const auto camera = node.index("camera", "cameras", file_.size("cameras"))) result_.cameras.push_back({*camera, to_world, name});
+    if (const auto camera = node.index("camera", "cameras", file_.size("cameras")))
+      result_.cameras.push_back({*camera, to_world, name});
     if (const auto extension = node.extension("KHR_lights_punctual")) {
       const auto lights = file_.root().extension("KHR_lights_punctual");
       const std::size_t size = lights ? lights->objects("lights").size() : 0;
@@ -118,7 +119,8 @@ class NodeWalk {
       if (!accessor) continue;
       const std::uint64_t own = accessor_count(file_, *accessor);
       if (count && *count != own)
-        attributes.fail(name, "with " + std::to_string(own) + " elements, expected as many as the others have: " + std::to_string(*count));
+        attributes.fail(
+            name, "with " + std::to_string(own) + " elements, expected as many as the others have: " + std::to_string(*count));
       count = own;
     }
     if (!count) throw SceneError(attributes.place(), "has none of TRANSLATION, ROTATION and SCALE, expected one of them");

@@ -22,8 +22,8 @@ struct GltfNodes {
 };
 
 // Walks the file's scene (`scene`, or the first; without any, all nodes that are no children). Throws SceneError for a node that is
-// reached twice (a cycle, or two parents), nesting deeper than kMaxNodeDepth, more than kMaxPlacedMeshes meshes, and transforms that
-// are not finite. Lines in `warnings` say what is not read: skins.
+// reached twice (a cycle, or two parents), nesting deeper than kMaxNodeDepth, more than kMaxPlacedMeshes meshes, and transforms
+// that are not finite. Lines in `warnings` say what is not read: skins.
 GltfNodes read_gltf_nodes(GltfFile& file, const Transform& to_world, std::vector<std::string>& warnings);
 
 }  // namespace fluxfarm

@@ -53,8 +53,8 @@ class PrimitiveReader {
     std::vector<float> values = read_floats(file_, *index, components);
     if (vertices_ == 0) vertices_ = values.size() / components;
     if (values.size() / components != vertices_) {
-      attributes_.fail(name.c_str(), "with " + std::to_string(values.size() / components) + " elements, expected as many as POSITION has: " +
-                                         std::to_string(vertices_));
+      attributes_.fail(name.c_str(), "with " + std::to_string(values.size() / components) +
+                                         " elements, expected as many as POSITION has: " + std::to_string(vertices_));
     }
     return values;
   }

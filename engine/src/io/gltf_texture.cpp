@@ -5,7 +5,6 @@
 #include "io/memory_file.h"
 #include "io/read_image.h"
 #include "support/error.h"
-#include "textures/make_texture.h"
 
 namespace fluxfarm {
 namespace {
@@ -75,7 +74,8 @@ std::shared_ptr<const TextureImage> GltfTextures::image(std::size_t index, bool 
     known = std::make_shared<const TextureImage>(read_image(memory.path(), image.place(), raw));
   } else {
     const std::filesystem::path file = file_.find(uri, image.place() + ".uri");
-    known = std::make_shared<const TextureImage>(read_image(file, image.place() + " (" + file_of_uri(uri, image.place()) + ")", raw));
+    known =
+        std::make_shared<const TextureImage>(read_image(file, image.place() + " (" + file_of_uri(uri, image.place()) + ")", raw));
   }
   pixels_ += static_cast<std::size_t>(known->width()) * static_cast<std::size_t>(known->height());
   if (pixels_ > kMaxTexturePixels) {
@@ -86,7 +86,14 @@ std::shared_ptr<const TextureImage> GltfTextures::image(std::size_t index, bool 
 }
 
 Rgb GltfTextures::mean(int texture) const {
-  return make_textures({textures_.at(static_cast<std::size_t>(texture))}).front()->mean_value();
+  const TextureImage& image = *std::get<BitmapDescription>(textures_.at(static_cast<std::size_t>(texture))).image;
+  Rgb sum;
+  for (int y = 0; y < image.height(); ++y) {
+    Rgb row;  // by rows: a single sum in single precision would lose the last texels
+    for (int x = 0; x < image.width(); ++x) row += image.texel(x, y);
+    sum += row / static_cast<float>(image.width());
+  }
+  return sum / static_cast<float>(image.height());
 }
 
 }  // namespace fluxfarm

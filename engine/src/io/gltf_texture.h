@@ -21,8 +21,8 @@ class GltfTextures {
     int texture;     // index into the scene's textures
     int uv_set = 0;  // TEXCOORD_n of the mesh
   };
-  // What the member `name` of a material shows; nothing if it is absent, or its texture has no image that is read, which is a warning.
-  // `raw`: numbers and no sRGB colours. Throws SceneError.
+  // What the member `name` of a material shows; nothing if it is absent, or its texture has no image that is read, which is a
+  // warning. `raw`: numbers and no sRGB colours. Throws SceneError.
   std::optional<Use> read(const GltfObject& object, const char* name, bool raw);
 
   // Mean of the image of a texture that read() gave.

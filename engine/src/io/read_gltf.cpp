@@ -30,7 +30,8 @@ bool is_invertible(const Transform& transform) {
 // Brings the meshes of a file into a scene: once for all places that share them, or as a copy where each needs its own.
 class MeshPlacer {
  public:
-  MeshPlacer(GltfFile& file, GltfMaterials& materials, SceneDescription& scene) : file_(file), materials_(materials), scene_(scene) {}
+  MeshPlacer(GltfFile& file, GltfMaterials& materials, SceneDescription& scene)
+      : file_(file), materials_(materials), scene_(scene) {}
 
   void place(const std::vector<GltfPlaced>& meshes) {
     std::vector<std::size_t> uses(file_.size("meshes"), 0);
@@ -104,7 +105,8 @@ class MeshPlacer {
     if (!raw) return std::nullopt;
     // Where the corners decide which side is the front, a mirroring node turns their order around.            [glTF, 3.7.4]
     if (raw->face_normals && to_world.determinant() < 0) {
-      for (std::size_t i = 0; i + 2 < raw->mesh.indices.size(); i += 3) std::swap(raw->mesh.indices[i + 1], raw->mesh.indices[i + 2]);
+      for (std::size_t i = 0; i + 2 < raw->mesh.indices.size(); i += 3)
+        std::swap(raw->mesh.indices[i + 1], raw->mesh.indices[i + 2]);
     }
     MeshOptions options;
     options.to_world = to_world;

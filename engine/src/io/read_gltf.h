@@ -7,8 +7,8 @@
 
 namespace fluxfarm {
 
-// The bundle's entry as a whole scene. What it lacks is supplied, with a warning each: a camera that frames everything, a constant white
-// environment of radiance 1 where nothing shines. Throws SceneError.
+// The bundle's entry as a whole scene. What it lacks is supplied, with a warning each: a camera that frames everything, a constant
+// white environment of radiance 1 where nothing shines. Throws SceneError.
 SceneDescription read_gltf_scene(const Bundle& bundle);
 
 // Adds the shapes and lights of the file that the shape node "gltf" names; its cameras are left aside. Throws SceneError.

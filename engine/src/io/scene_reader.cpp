@@ -22,7 +22,8 @@ PluginNode read_tree(const Bundle& bundle, const SceneOverrides& overrides) {
   const std::string extension = bundle.entry().extension().string();
   if (extension == ".xml") return read_mitsuba_xml(bundle, overrides);
   const std::string name = bundle.name(bundle.entry());
-  if (extension != ".json") throw SceneError(name, "has the extension " + in_quotes(extension) + ", expected .xml, .json, .glb or .gltf");
+  if (extension != ".json")
+    throw SceneError(name, "has the extension " + in_quotes(extension) + ", expected .xml, .json, .glb or .gltf");
   check_no_overrides(name, overrides);
   return read_mitsuba_json(bundle);
 }

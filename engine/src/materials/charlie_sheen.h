@@ -12,8 +12,8 @@
 
 namespace fluxfarm {
 
-// Value for white sheen, without cosine, sr^-1, of directions above the surface with half vector cosine `h_z`. D of [Estevez17] with
-// the visibility of [Neubelt13], as KHR_materials_sheen allows. alpha > 0.
+// Value for white sheen, without cosine, sr^-1, of directions above the surface with half vector cosine `h_z`. D of [Estevez17]
+// with the visibility of [Neubelt13], as KHR_materials_sheen allows. alpha > 0.
 inline float charlie_sheen(float alpha, float cos_o, float cos_i, float h_z) {
   const float inverse = 1 / alpha, sine = safe_sqrt(1 - h_z * h_z);
   const float density = (2 + inverse) * std::pow(sine, inverse) * (0.5f * kInvPi);

@@ -1,15 +1,16 @@
-// glTF's metallic-roughness surface: diffuse or transmitting base under Schlick-Fresnel GGX, or metal; then sheen; then a clear coat.
+// glTF's metallic-roughness surface: diffuse or transmitting base under Schlick-Fresnel GGX, or metal; then sheen; then a clear
+// coat.
 //
-//   dielectric = (1 - t) N base / pi + t (1 - max F_d) base T + F_d S      F_d = Schlick from the index of refraction and `specular`
-//   metal      = F_m S                                                     F_m = Schlick from the base colour
-//   f          = (1 - c F_c(wo)) (1 - c F_c(wi)) [sheen + E (mix(dielectric, metal, metallic))] + c F_c S_c
+//   dielectric = (1 - t) N base / pi + t (1 - max F_d) base T + F_d S      F_d = Schlick from the index of refraction and
+//   `specular` metal      = F_m S                                                     F_m = Schlick from the base colour f = (1 - c
+//   F_c(wo)) (1 - c F_c(wi)) [sheen + E (mix(dielectric, metal, metallic))] + c F_c S_c
 //
 // S and S_c are GGX with separable Smith, T its refraction (a volume) or the mirror image of S (a thin pane), E what sheen leaves,
 // N = (1 - max F_d(wo)) (1 - max F_d(wi)) / (1 - mean max F_d) what a smooth interface leaves to a diffuse base [Kelemen01].
-// Both sides scatter alike, but for the inside of a volume, which has neither coat nor sheen. Where it differs from [glTF]: N stands there for 1 - max F_d at the microfacet, which gains up to 29 % of energy at grazing
-// angles; the coat and sheen dim what is below on the way in and out alike, so that the BSDF is reciprocal; the interface of a volume has
-// the exact Fresnel reflectance, since Schlick's knows no total reflection. Single scattering: loses energy
-// with roughness.
+// Both sides scatter alike, but for the inside of a volume, which has neither coat nor sheen. Where it differs from [glTF]: N
+// stands there for 1 - max F_d at the microfacet, which gains up to 29 % of energy at grazing angles; the coat and sheen dim what
+// is below on the way in and out alike, so that the BSDF is reciprocal; the interface of a volume has the exact Fresnel
+// reflectance, since Schlick's knows no total reflection. Single scattering: loses energy with roughness.
 //
 // [glTF]     Khronos, "glTF 2.0 Specification", appendix B, and the KHR_materials_* extensions.
 // [Kelemen01] C. Kelemen and L. Szirmay-Kalos, "A Microfacet Based Coupled Specular-Matte BRDF Model with Importance Sampling",
@@ -106,9 +107,7 @@ class Gltf final : public Bsdf {
   bool has_sheen() const { return !sheen_.is_black(); }
 
   // Into the frame of the anisotropy and back.
-  Vec3f turned(const Vec3f& w) const {
-    return {rotation_.x * w.x + rotation_.y * w.y, rotation_.x * w.y - rotation_.y * w.x, w.z};
-  }
+  Vec3f turned(const Vec3f& w) const { return {rotation_.x * w.x + rotation_.y * w.y, rotation_.x * w.y - rotation_.y * w.x, w.z}; }
   Vec3f turned_back(const Vec3f& w) const {
     return {rotation_.x * w.x - rotation_.y * w.y, rotation_.x * w.y + rotation_.y * w.x, w.z};
   }
@@ -126,7 +125,8 @@ class Gltf final : public Bsdf {
 
   // N above.                                                                                              [Kelemen01]
   float left_to_diffuse(float cos_o, float cos_i, bool outside) const {
-    const float left = (1 - max_component(dielectric_fresnel(cos_o, outside))) * (1 - max_component(dielectric_fresnel(cos_i, outside)));
+    const float left =
+        (1 - max_component(dielectric_fresnel(cos_o, outside))) * (1 - max_component(dielectric_fresnel(cos_i, outside)));
     if (ior_ == 0 || has_exact_fresnel()) return left;  // without the mean, which has no closed form: a little too dark
     const float f0 = max_component(min(specular_color_ * sqr((1 - ior_) / (1 + ior_)), 1));
     const float mean = (f0 + (1 - f0) / 21) * specular_;  // Schlick's, weighted by the cosine

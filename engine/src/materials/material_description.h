@@ -68,9 +68,9 @@ struct RoughPlasticDescription {
   Roughness roughness;  // isotropic: alpha_u = alpha_v
 };
 
-// glTF 2.0's metallic-roughness model with the KHR extensions specular, ior, transmission, clearcoat, sheen and anisotropy. Scatters on
-// both sides. Texture channels as glTF has them: metallic B, roughness G; transmission R,
-// clear coat R and its roughness G; colours RGB. Each multiplies its constant.
+// glTF 2.0's metallic-roughness model with the KHR extensions specular, ior, transmission, clearcoat, sheen and anisotropy.
+// Scatters on both sides. Texture channels as glTF has them: metallic B, roughness G; transmission R, clear coat R and its
+// roughness G; colours RGB. Each multiplies its constant.
 struct GltfDescription {
   Rgb base_color{1.0f};
   float metallic = 1;
@@ -78,9 +78,9 @@ struct GltfDescription {
   float ior = 1.5f;     // interior over exterior; 0 reflects all at every angle
   float specular = 1;   // of the dielectric part
   Rgb specular_color{1.0f};
-  float transmission = 0;  // share of what would be diffuse
-  bool thin = true;        // transmits without refraction, as a pane; else it bounds a volume on the side of -z
-  float anisotropy = 0;    // [0,1], rougher along the tangent
+  float transmission = 0;         // share of what would be diffuse
+  bool thin = true;               // transmits without refraction, as a pane; else it bounds a volume on the side of -z
+  float anisotropy = 0;           // [0,1], rougher along the tangent
   float anisotropy_rotation = 0;  // radians, from the tangent towards the bitangent
   float clearcoat = 0;
   float clearcoat_roughness = 0;

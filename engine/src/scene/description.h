@@ -32,8 +32,8 @@ struct MeshDescription {
   std::vector<std::uint32_t> indices;  // three per triangle; counter-clockwise seen from the front
 };
 
-// A mesh in its own space, placed in the world. Descriptions that point to the same mesh share it: it is kept once, however often it
-// is placed. The front stays on its side, also under a mirroring transform. Never emissive.
+// A mesh in its own space, placed in the world. Descriptions that point to the same mesh share it: it is kept once, however often
+// it is placed. The front stays on its side, also under a mirroring transform. Never emissive.
 struct InstanceDescription {
   std::shared_ptr<const MeshDescription> mesh;
   Transform to_world;  // invertible

@@ -1,4 +1,5 @@
-// Malformed and hostile glTF: each gives one error that names the place, and nothing crashes or takes memory that the file does not have.
+// Malformed and hostile glTF: each gives one error that names the place, and nothing crashes or takes memory that the file does not
+// have.
 #include <limits>
 
 #include "io/gltf_builder.h"
@@ -35,14 +36,17 @@ TEST(BadGltf, LyingAccessorsAreErrors) {
               "scene.gltf: accessors[0].bufferView: is 0, which has 36 bytes, too few for 4 elements of 12 bytes");
   expect_part(error_of_accessor(R"("bufferView": 0, "componentType": 5126, "count": 1099511627776, "type": "VEC3")"),
               "accessors[0].count: is 1099511627776, expected an integer in [0, 268435456]");
-  expect_part(error_of_accessor(R"("bufferView": 0, "componentType": 5126, "count": 200000000, "type": "VEC3")"), "accessors[0].count");
+  expect_part(error_of_accessor(R"("bufferView": 0, "componentType": 5126, "count": 200000000, "type": "VEC3")"),
+              "accessors[0].count");
   expect_part(error_of_accessor(R"("componentType": 5126, "count": 200000000, "type": "VEC3")"), "without a bufferView");
-  expect_part(error_of_accessor(R"("bufferView": 0, "byteOffset": 4, "componentType": 5126, "count": 3, "type": "VEC3")"), "from byte 4 on");
+  expect_part(error_of_accessor(R"("bufferView": 0, "byteOffset": 4, "componentType": 5126, "count": 3, "type": "VEC3")"),
+              "from byte 4 on");
   expect_part(error_of_accessor(R"("bufferView": 7, "componentType": 5126, "count": 3, "type": "VEC3")"),
               "accessors[0].bufferView: is 7, expected an index into bufferViews, which has 1 elements");
   expect_part(error_of_accessor(R"("bufferView": 0, "componentType": 5127, "count": 3, "type": "VEC3")"), "componentType: is 5127");
   expect_part(error_of_accessor(R"("bufferView": 0, "componentType": 5126, "count": -3, "type": "VEC3")"), "count: is -3");
-  expect_part(error_of_accessor(R"("bufferView": 0, "componentType": 5126, "count": 3, "type": "MAT4")"), "type: is the text \"MAT4\"");
+  expect_part(error_of_accessor(R"("bufferView": 0, "componentType": 5126, "count": 3, "type": "MAT4")"),
+              "type: is the text \"MAT4\"");
   expect_part(error_of_accessor(R"("bufferView": 0, "componentType": 5126, "type": "VEC3")"), "count: is missing");
 }
 
@@ -74,7 +78,8 @@ TEST(BadGltf, MissingAndForeignFilesAreErrors) {
   expect_part(error_of_text(gltf.document("\"uri\": \"gone.bin\", ")), "buffers[0].uri: file \"gone.bin\" does not exist");
   expect_part(error_of_text(gltf.document("\"uri\": \"../../etc/passwd\", ")), "lies outside the scene's folder");
   expect_part(error_of_text(gltf.document("\"uri\": \"%2e%2e/%2e%2e/etc/passwd\", ")), "lies outside the scene's folder");
-  expect_part(error_of_text(gltf.document("\"uri\": \"http://example.org/a.bin\", ")), "expected the name of a file beside this one");
+  expect_part(error_of_text(gltf.document("\"uri\": \"http://example.org/a.bin\", ")),
+              "expected the name of a file beside this one");
   expect_part(error_of_text(gltf.document("\"uri\": \"data:;base64,A!A\", ")), "expected base64");
   expect_part(error_of_text(gltf.document("")), "no binary chunk");
   gltf.add("images", R"({"uri": "gone.png"})").add("textures", R"({"source": 0})");
@@ -111,7 +116,8 @@ TEST(BadGltf, TooManyInstancesAreAnErrorBeforeAnythingIsRead) {
   GltfBuilder gltf;
   gltf.bytes(std::string(12, '\0'));
   const int many = gltf.raw_accessor(R"("bufferView": 0, "componentType": 5126, "count": 100000000, "type": "VEC3")");
-  gltf.square("", ", \"extensions\": {\"EXT_mesh_gpu_instancing\": {\"attributes\": {\"TRANSLATION\": " + std::to_string(many) + "}}}");
+  gltf.square("",
+              ", \"extensions\": {\"EXT_mesh_gpu_instancing\": {\"attributes\": {\"TRANSLATION\": " + std::to_string(many) + "}}}");
   expect_part(error_of_builder(gltf), "places 100000000 instances, expected at most 1048576");
 }
 
@@ -203,7 +209,8 @@ TEST(BadGltf, NodeOfAMitsubaSceneNamesItsPlace) {
             "scene.xml:2: shape \"gltf\": lacks the parameter \"filename\"");
   expect_part(error_of([&] { folder.read_xml("<shape type=\"gltf\"><string name=\"filename\" value=\"a.glb\"/></shape>"); }),
               "scene.xml:2: file \"a.glb\" does not exist");
-  expect_part(error_of([&] { folder.read_xml("<shape type=\"gltf\"><integer name=\"lod\" value=\"1\"/></shape>"); }), "scene.xml:2");
+  expect_part(error_of([&] { folder.read_xml("<shape type=\"gltf\"><integer name=\"lod\" value=\"1\"/></shape>"); }),
+              "scene.xml:2");
 }
 
 }  // namespace

@@ -27,8 +27,8 @@ class GltfBuilder {
   }
   // A buffer view over those bytes; returns its index.
   int bytes(const std::string& data, const std::string& extra = "") {
-    add("bufferViews", "{\"buffer\": 0, \"byteOffset\": " + std::to_string(binary_.size()) + ", \"byteLength\": " +
-                           std::to_string(data.size()) + extra + "}");
+    add("bufferViews", "{\"buffer\": 0, \"byteOffset\": " + std::to_string(binary_.size()) +
+                           ", \"byteLength\": " + std::to_string(data.size()) + extra + "}");
     binary_ += data;
     binary_.resize((binary_.size() + 3) / 4 * 4, '\0');
     return views_++;
@@ -50,9 +50,9 @@ class GltfBuilder {
     const int normals = accessor<float>({0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1}, 3);
     const int uvs = accessor<float>({0, 1, 1, 1, 1, 0, 0, 0}, 2);
     const int indices = accessor<std::uint16_t>({0, 1, 2, 0, 2, 3}, 1);
-    add("meshes", "{\"primitives\": [{\"attributes\": {\"POSITION\": " + std::to_string(positions) + ", \"NORMAL\": " +
-                      std::to_string(normals) + ", \"TEXCOORD_0\": " + std::to_string(uvs) + "}, \"indices\": " +
-                      std::to_string(indices) + primitive_members + "}]}");
+    add("meshes", "{\"primitives\": [{\"attributes\": {\"POSITION\": " + std::to_string(positions) +
+                      ", \"NORMAL\": " + std::to_string(normals) + ", \"TEXCOORD_0\": " + std::to_string(uvs) +
+                      "}, \"indices\": " + std::to_string(indices) + primitive_members + "}]}");
     add("nodes", "{\"mesh\": 0" + node_members + "}");
     return *this;
   }

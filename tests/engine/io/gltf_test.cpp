@@ -59,7 +59,8 @@ TEST(Gltf, IndicesOfAllTypesStripsAndFansGiveTheSameSquare) {
   const auto area = [](const MeshDescription& mesh) {
     float sum = 0;
     for (std::size_t i = 0; i < mesh.indices.size(); i += 3) {
-      const Vec3f a = mesh.positions[mesh.indices[i]], b = mesh.positions[mesh.indices[i + 1]], c = mesh.positions[mesh.indices[i + 2]];
+      const Vec3f a = mesh.positions[mesh.indices[i]], b = mesh.positions[mesh.indices[i + 1]],
+                  c = mesh.positions[mesh.indices[i + 2]];
       sum += 0.5f * cross(b - a, c - a).z;  // signed: all must face +z
     }
     return sum;
@@ -87,8 +88,10 @@ TEST(Gltf, QuantizedStridedAndSparseAccessorsAreDecoded) {
   const int quantized = gltf.accessor<std::int16_t>({0, 0, 0, 32767, 0, 0, 0, -32768, 0}, 3, ", \"normalized\": true");
   gltf.add("meshes", "{\"primitives\": [{\"attributes\": {\"POSITION\": " + std::to_string(quantized) + "}}]}");
   // Elements of 12 bytes, 16 apart.
-  const int view = gltf.bytes(std::string(4, '\0') + std::string("\0\0\0\0\0\0\0\0\0\0\0\0PADD\0\0\0\x40\0\0\0\0\0\0\0\0PADD\0\0\0\0\0\0\0\x40\0\0\0\0", 44),
-                              ", \"byteStride\": 16");
+  const int view =
+      gltf.bytes(std::string(4, '\0') +
+                     std::string("\0\0\0\0\0\0\0\0\0\0\0\0PADD\0\0\0\x40\0\0\0\0\0\0\0\0PADD\0\0\0\0\0\0\0\x40\0\0\0\0", 44),
+                 ", \"byteStride\": 16");
   const int strided = gltf.raw_accessor("\"bufferView\": " + std::to_string(view) +
                                         ", \"byteOffset\": 4, \"componentType\": 5126, \"count\": 3, \"type\": \"VEC3\"");
   gltf.add("meshes", "{\"primitives\": [{\"attributes\": {\"POSITION\": " + std::to_string(strided) + "}}]}");
@@ -96,15 +99,18 @@ TEST(Gltf, QuantizedStridedAndSparseAccessorsAreDecoded) {
   const int where = gltf.bytes(std::string("\1\2", 2));
   const std::vector<float> values{3, 0, 0, 0, 4, 0};
   const int what = gltf.bytes(std::string(reinterpret_cast<const char*>(values.data()), 24));
-  const int sparse = gltf.raw_accessor("\"componentType\": 5126, \"count\": 3, \"type\": \"VEC3\", \"sparse\": {\"count\": 2, \"indices\": "
-                                       "{\"bufferView\": " + std::to_string(where) + ", \"componentType\": 5121}, \"values\": {\"bufferView\": " +
-                                       std::to_string(what) + "}}");
+  const int sparse = gltf.raw_accessor(
+      "\"componentType\": 5126, \"count\": 3, \"type\": \"VEC3\", \"sparse\": {\"count\": 2, \"indices\": "
+      "{\"bufferView\": " +
+      std::to_string(where) + ", \"componentType\": 5121}, \"values\": {\"bufferView\": " + std::to_string(what) + "}}");
   gltf.add("meshes", "{\"primitives\": [{\"attributes\": {\"POSITION\": " + std::to_string(sparse) + "}}]}");
   gltf.add("nodes", "{\"mesh\": 0}, {\"mesh\": 1}, {\"mesh\": 2}");
   gltf.more(", \"extensionsRequired\": [\"KHR_mesh_quantization\"]");
   const SceneDescription scene = gltf.read(folder);
   ASSERT_EQ(scene.shapes.size(), 3u);
-  const auto position = [&](std::size_t shape, std::size_t i) { return std::get<MeshDescription>(scene.shapes[shape].geometry).positions[i]; };
+  const auto position = [&](std::size_t shape, std::size_t i) {
+    return std::get<MeshDescription>(scene.shapes[shape].geometry).positions[i];
+  };
   expect_near(position(0, 1), {1, 0, 0});
   expect_near(position(0, 2), {0, -1, 0});  // -32768 is clamped
   expect_near(position(1, 1), {2, 0, 0});
@@ -143,8 +149,9 @@ TEST(Gltf, MeshOfSeveralNodesIsSharedAndALightIsNot) {
   GltfBuilder lights;
   lights.square(", \"material\": 0");
   lights.add("nodes", "{\"mesh\": 0, \"translation\": [5, 0, 0]}");
-  lights.add("materials", "{\"emissiveFactor\": [1, 0.5, 0.25], \"extensions\": {\"KHR_materials_emissive_strength\": "
-                          "{\"emissiveStrength\": 8}}, \"doubleSided\": true}");
+  lights.add("materials",
+             "{\"emissiveFactor\": [1, 0.5, 0.25], \"extensions\": {\"KHR_materials_emissive_strength\": "
+             "{\"emissiveStrength\": 8}}, \"doubleSided\": true}");
   const SceneDescription shining = lights.read(folder);
   ASSERT_EQ(shining.shapes.size(), 2u);
   expect_near(std::get<MeshDescription>(shining.shapes[1].geometry).positions[0], {5, 0, 0});
@@ -159,9 +166,10 @@ TEST(Gltf, GpuInstancesAreInstancesOfOneMesh) {
   const int translation = gltf.accessor<float>({1, 0, 0, 2, 0, 0, 3, 0, 0}, 3);
   const int scale = gltf.accessor<float>({1, 1, 1, 2, 2, 2, 3, 3, 3}, 3);
   const int rotation = gltf.accessor<std::int8_t>({0, 0, 0, 127, 0, 0, 127, 0, 0, 0, 0, 127}, 4, ", \"normalized\": true");
-  gltf.square("", ", \"translation\": [0, 7, 0], \"extensions\": {\"EXT_mesh_gpu_instancing\": {\"attributes\": {\"TRANSLATION\": " +
-                      std::to_string(translation) + ", \"SCALE\": " + std::to_string(scale) + ", \"ROTATION\": " +
-                      std::to_string(rotation) + "}}}");
+  gltf.square("",
+              ", \"translation\": [0, 7, 0], \"extensions\": {\"EXT_mesh_gpu_instancing\": {\"attributes\": {\"TRANSLATION\": " +
+                  std::to_string(translation) + ", \"SCALE\": " + std::to_string(scale) +
+                  ", \"ROTATION\": " + std::to_string(rotation) + "}}}");
   const SceneDescription scene = gltf.read(folder);
   ASSERT_EQ(scene.shapes.size(), 3u);
   const auto& second = std::get<InstanceDescription>(scene.shapes[1].geometry);
@@ -173,7 +181,8 @@ TEST(Gltf, MaterialsKeepTheFactorsOfTheFile) {
   const SceneFolder folder;
   GltfBuilder gltf;
   gltf.square(", \"material\": 0");
-  gltf.add("materials", R"({"pbrMetallicRoughness": {"baseColorFactor": [0.1, 0.2, 0.3, 1], "metallicFactor": 0.4, "roughnessFactor": 0.6},
+  gltf.add("materials",
+           R"({"pbrMetallicRoughness": {"baseColorFactor": [0.1, 0.2, 0.3, 1], "metallicFactor": 0.4, "roughnessFactor": 0.6},
     "extensions": {"KHR_materials_ior": {"ior": 1.7}, "KHR_materials_specular": {"specularFactor": 0.8, "specularColorFactor": [1, 0.9, 2]},
     "KHR_materials_clearcoat": {"clearcoatFactor": 0.7, "clearcoatRoughnessFactor": 0.2}, "KHR_materials_sheen": {"sheenColorFactor":
     [0.3, 0.2, 0.1], "sheenRoughnessFactor": 0.5}, "KHR_materials_anisotropy": {"anisotropyStrength": 0.9, "anisotropyRotation": 1.5},
@@ -219,15 +228,15 @@ TEST(Gltf, GlassWithAVolumeIsADielectric) {
 TEST(Gltf, ImagesComeFromFilesBuffersAndDataUris) {
   const SceneFolder folder;
   // A PNG of two texels: red, blue.
-  const std::string base64 =
-      "iVBORw0KGgoAAAANSUhEUgAAAAIAAAABCAIAAAB7QOjdAAAADUlEQVR4nGP4zwAE/wEHAAH/4iOeWQAAAABJRU5ErkJggg==";
+  const std::string base64 = "iVBORw0KGgoAAAANSUhEUgAAAAIAAAABCAIAAAB7QOjdAAAADUlEQVR4nGP4zwAE/wEHAAH/4iOeWQAAAABJRU5ErkJggg==";
   folder.write("parts/two texels.png", data_uri_bytes("data:image/png;base64," + base64, "test"));
   for (const char* source : {"uri", "file", "buffer"}) {
     GltfBuilder gltf;
     gltf.square(", \"material\": 0");
     gltf.add("materials", R"({"pbrMetallicRoughness": {"baseColorTexture": {"index": 0, "extensions": {"KHR_texture_transform":
       {"offset": [0.5, 0], "scale": [2, 1]}}}}})");
-    gltf.add("textures", R"({"source": 0, "sampler": 0})").add("samplers", R"({"magFilter": 9728, "wrapS": 33071, "wrapT": 33071})");
+    gltf.add("textures", R"({"source": 0, "sampler": 0})")
+        .add("samplers", R"({"magFilter": 9728, "wrapS": 33071, "wrapT": 33071})");
     if (source == std::string("uri")) {
       gltf.add("images", "{\"uri\": \"data:image/png;base64," + base64 + "\"}");
     } else if (source == std::string("file")) {
@@ -256,7 +265,8 @@ TEST(Gltf, LightsShineAlongMinusZ) {
   gltf.more(R"(, "extensions": {"KHR_lights_punctual": {"lights": [{"type": "point", "color": [1, 0.5, 0], "intensity": 10},
     {"type": "spot", "intensity": 2, "spot": {"innerConeAngle": 0.1, "outerConeAngle": 0.5}}, {"type": "directional"}]}})");
   for (const char* light : {"0", "1", "2"})
-    gltf.add("nodes", "{\"translation\": [1, 2, 3], \"extensions\": {\"KHR_lights_punctual\": {\"light\": " + std::string(light) + "}}}");
+    gltf.add("nodes",
+             "{\"translation\": [1, 2, 3], \"extensions\": {\"KHR_lights_punctual\": {\"light\": " + std::string(light) + "}}}");
   const SceneDescription scene = gltf.read(folder);
   ASSERT_EQ(scene.emitters.size(), 3u);
   const auto& point = std::get<PointEmitterDescription>(scene.emitters[0]);
@@ -311,7 +321,8 @@ TEST(Gltf, StandsInsideAMitsubaSceneAsAShape) {
   expect_near(std::get<MeshDescription>(xml.shapes[0].geometry).positions[0], {3, 0, 0});
   EXPECT_EQ(xml.emitters.size(), 1u);  // that of the XML, no environment of our own
   EXPECT_NE(xml.shapes[0].material, xml.shapes[1].material);
-  const SceneDescription json = folder.read_json(R"({"type": "scene", "camera": {"type": "perspective"}, "sky": {"type": "constant"},
+  const SceneDescription json =
+      folder.read_json(R"({"type": "scene", "camera": {"type": "perspective"}, "sky": {"type": "constant"},
     "model": {"type": "gltf", "filename": "models/a.glb"}})");
   EXPECT_EQ(json.shapes.size(), 1u);
 }
@@ -324,8 +335,8 @@ TEST(Gltf, WhatIsNotReadIsAWarning) {
   gltf.add("nodes", R"({"mesh": 0, "scale": [0, 0, 0]})").add("animations", "{}");
   gltf.more(R"(, "extensionsUsed": ["KHR_materials_unlit", "VENDOR_sparkle"])");
   const SceneDescription scene = gltf.read(folder);
-  for (const char* text : {"VENDOR_sparkle", "alphaMode MASK", "KHR_materials_unlit: the surface", "scaled to nothing", "animations",
-                           "morph targets"}) {
+  for (const char* text : {"VENDOR_sparkle", "alphaMode MASK", "KHR_materials_unlit: the surface", "scaled to nothing",
+                           "animations", "morph targets"}) {
     EXPECT_TRUE(warns(scene, text)) << text;
   }
 }
