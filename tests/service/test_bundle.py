@@ -35,6 +35,27 @@ def test_json_scene_is_read_alike(tmp_path: Path) -> None:
     assert set(collect(tmp_path / "scene.json").files) == {"scene.json", "a.obj", "b.png"}
 
 
+def test_gltf_brings_its_buffers_and_images_from_beside_it(tmp_path: Path) -> None:
+    document = """{"asset": {"version": "2.0"}, "buffers": [{"uri": "a%20b.bin"}, {"uri": "data:;base64,AAAA"}, {}],
+        "images": [{"uri": "maps/a.png"}, {"bufferView": 0}]}"""
+    write(tmp_path, models__a_gltf=document)
+    (tmp_path / "models" / "maps").mkdir()
+    for name in ("models/a b.bin", "models/maps/a.png"):
+        (tmp_path / name).write_bytes(b"")
+    assert set(collect(tmp_path / "models" / "a.gltf").files) == {"a.gltf", "a b.bin", "maps/a.png"}
+    chunk = document.encode()
+    header = b"glTF" + b"".join(n.to_bytes(4, "little") for n in (2, 20 + len(chunk), len(chunk))) + b"JSON"
+    (tmp_path / "models" / "a.glb").write_bytes(header + chunk)
+    assert set(collect(tmp_path / "models" / "a.glb").files) == {"a.glb", "a b.bin", "maps/a.png"}
+    scene = '<scene><shape type="gltf"><string name="filename" value="models/a.glb"/></shape></scene>'
+    write(tmp_path, scene_xml=scene)
+    expected = {"scene.xml", "models/a.glb", "models/a b.bin", "models/maps/a.png"}
+    assert set(collect(tmp_path / "scene.xml").files) == expected
+    (tmp_path / "models" / "maps" / "a.png").unlink()
+    with pytest.raises(CommandError, match=r"maps/a\.png"):
+        collect(tmp_path / "models" / "a.gltf")
+
+
 def test_reference_beside_the_scenes_folder_widens_the_bundle(tmp_path: Path) -> None:
     scene = '<scene><shape type="obj"><string name="filename" value="../meshes/a.obj"/></shape></scene>'
     write(tmp_path, scenes__one_xml=scene, meshes__a_obj="")

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <unordered_map>
 #include <vector>
 
 #if defined(__SSE2__)
@@ -21,6 +22,8 @@ struct RayAccelerator::Impl {
   RTCScene scene = nullptr;
   // Vertices of rectangles, which have no mesh of their own; padded to the 16 bytes that Embree reads.
   std::vector<std::unique_ptr<std::array<Vec3f, 5>>> corners;
+  // Trees of the meshes that instances place.
+  std::unordered_map<const TriangleMesh*, RTCScene> shared;
   std::uint32_t shapes = 0;
 
   void attach(RTCGeometry geometry) {
@@ -29,12 +32,35 @@ struct RayAccelerator::Impl {
     rtcReleaseGeometry(geometry);
   }
 
-  void attach_triangles(const Vec3f* positions, std::size_t vertices, const std::uint32_t* indices, std::size_t triangles) {
+  RTCGeometry make_triangles(const Vec3f* positions, std::size_t vertices, const std::uint32_t* indices,
+                             std::size_t triangles) const {
     RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
     rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, positions, 0, sizeof(Vec3f), vertices);
     rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, indices, 0, 3 * sizeof(std::uint32_t),
                                triangles);
-    attach(geometry);
+    return geometry;
+  }
+  RTCGeometry make_triangles(const TriangleMesh& mesh) const {
+    const TriangleMesh::Data& data = mesh.data();
+    return make_triangles(data.positions.data(), data.positions.size(), data.indices.data(), mesh.triangles());
+  }
+
+  // A scene of that mesh alone: its only geometry has the number 0.
+  RTCScene tree_of(const TriangleMesh& mesh) {
+    RTCScene& tree = shared[&mesh];
+    if (tree != nullptr) return tree;
+    tree = rtcNewScene(device);
+    RTCGeometry geometry = make_triangles(mesh);
+    rtcCommitGeometry(geometry);
+    rtcAttachGeometryByID(tree, geometry, 0);
+    rtcReleaseGeometry(geometry);
+    rtcCommitScene(tree);
+    return tree;
+  }
+
+  // Number of the shape that Embree hit: an instance is known by its own number, not by that of the geometry inside it.
+  static std::uint32_t shape_of(std::uint32_t geometry, std::uint32_t instance) {
+    return instance != RTC_INVALID_GEOMETRY_ID ? instance : geometry;
   }
 
   void throw_on_error(const char* doing) const {
@@ -95,20 +121,28 @@ RayAccelerator::RayAccelerator(int threads) : impl_(std::make_unique<Impl>()) {
 }
 
 RayAccelerator::~RayAccelerator() {
+  for (const auto& [mesh, tree] : impl_->shared) rtcReleaseScene(tree);
   if (impl_->scene != nullptr) rtcReleaseScene(impl_->scene);
   if (impl_->device != nullptr) rtcReleaseDevice(impl_->device);
 }
 
-void RayAccelerator::add(const TriangleMesh& mesh) {
-  const TriangleMesh::Data& data = mesh.data();
-  impl_->attach_triangles(data.positions.data(), data.positions.size(), data.indices.data(), mesh.triangles());
+void RayAccelerator::add(const TriangleMesh& mesh) { impl_->attach(impl_->make_triangles(mesh)); }
+
+void RayAccelerator::add(const MeshInstance& instance) {
+  RTCGeometry geometry = rtcNewGeometry(impl_->device, RTC_GEOMETRY_TYPE_INSTANCE);
+  rtcSetGeometryInstancedScene(geometry, impl_->tree_of(instance.mesh()));
+  const Transform::Matrix& m = instance.to_world().matrix();
+  std::array<float, 12> columns;
+  for (std::size_t i = 0; i < columns.size(); ++i) columns[i] = static_cast<float>(m[i % 3][i / 3]);
+  rtcSetGeometryTransform(geometry, 0, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, columns.data());
+  impl_->attach(geometry);
 }
 
 void RayAccelerator::add(const Rectangle& rectangle) {
   static constexpr std::uint32_t kIndices[6] = {0, 1, 2, 0, 2, 3};
   auto corners = std::make_unique<std::array<Vec3f, 5>>();
   for (int i = 0; i < 4; ++i) (*corners)[i] = rectangle.corner(i);
-  impl_->attach_triangles(corners->data(), 4, kIndices, 2);
+  impl_->attach(impl_->make_triangles(corners->data(), 4, kIndices, 2));
   impl_->corners.push_back(std::move(corners));
 }
 
@@ -139,7 +173,7 @@ bool RayAccelerator::intersect(const Ray& ray, Hit& hit) const {
   query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
   embree_intersect(impl_->scene, query);
   if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return false;
-  hit = {query.ray.tfar, query.hit.geomID, query.hit.primID, query.hit.u, query.hit.v};
+  hit = {query.ray.tfar, Impl::shape_of(query.hit.geomID, query.hit.instID[0]), query.hit.primID, query.hit.u, query.hit.v};
   return true;
 }
 
@@ -201,6 +235,9 @@ void RayAccelerator::intersect(std::span<const Ray> rays, std::span<Hit> hits, b
     embree_intersect(impl_->scene, valid, coherent, packet);
     for (std::size_t i = 0; i < count; ++i) {
       hits[i] = {packet.ray.tfar[i], packet.hit.geomID[i], packet.hit.primID[i], packet.hit.u[i], packet.hit.v[i]};
+    }
+    if (!impl_->shared.empty()) {
+      for (std::size_t i = 0; i < count; ++i) hits[i].shape = Impl::shape_of(packet.hit.geomID[i], packet.hit.instID[0][i]);
     }
     rays = rays.subspan(count);
     hits = hits.subspan(count);

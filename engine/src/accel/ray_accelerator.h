@@ -11,6 +11,7 @@
 #include <string>
 
 #include "geometry/disk.h"
+#include "geometry/mesh_instance.h"
 #include "geometry/rectangle.h"
 #include "geometry/sphere.h"
 #include "geometry/surface_point.h"
@@ -45,6 +46,8 @@ class RayAccelerator {
   void add(const Rectangle& rectangle);
   void add(const Disk& disk);
   void add(const Sphere& sphere);
+  // Instances of the same mesh share its tree.
+  void add(const MeshInstance& instance);
   // Call once, after the last add. Throws ResourceError when memory runs out.
   void build();
 

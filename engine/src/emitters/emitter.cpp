@@ -4,8 +4,11 @@ namespace fluxfarm {
 
 std::optional<EmitterSample> AreaEmitter::sample(Vec3f reference, Vec2f u) const {
   const std::optional<ShapeSample> s = shape_.sample(reference, u);
-  if (!s || dot(s->normal, s->wi) >= 0) return std::nullopt;
-  return EmitterSample{s->position, s->normal, s->wi, s->distance, radiance_ / s->pdf_solid_angle, s->pdf_solid_angle, false};
+  if (!s) return std::nullopt;
+  const bool back = dot(s->normal, s->wi) >= 0;
+  if (back && !both_sides_) return std::nullopt;
+  return EmitterSample{
+      s->position, back ? -s->normal : s->normal, s->wi, s->distance, radiance_ / s->pdf_solid_angle, s->pdf_solid_angle, false};
 }
 
 std::optional<EmitterSample> PointEmitter::sample(Vec3f reference, Vec2f) const {

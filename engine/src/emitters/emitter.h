@@ -20,7 +20,7 @@ inline constexpr float kDistant = std::numeric_limits<float>::infinity();
 // Light that arrives at a reference point, if nothing is in between.
 struct EmitterSample {
   Vec3f position;             // unused if `distance` is kDistant
-  Vec3f normal;               // unit, front side of the emitter there; zero for a point
+  Vec3f normal;               // unit, on the side of the emitter that shines to the reference; zero for a point
   Vec3f wi;                   // unit, from the reference point towards the light
   float distance = 0;         // m
   Rgb weight;                 // radiance over pdf_solid_angle; for a delta light the irradiance across wi. W m^-2
@@ -38,19 +38,23 @@ class Emitter {
 
 class AreaEmitter final : public Emitter {
  public:
-  // Emits `radiance` (W m^-2 sr^-1) from the front side of `shape`, which must outlive this.
-  AreaEmitter(const Shape& shape, Rgb radiance) : shape_(shape), radiance_(radiance) {}
+  // Emits `radiance` (W m^-2 sr^-1) from the front side of `shape`, or from both; `shape` must outlive this.
+  AreaEmitter(const Shape& shape, Rgb radiance, bool both_sides = false)
+      : shape_(shape), radiance_(radiance), both_sides_(both_sides) {}
 
   std::optional<EmitterSample> sample(Vec3f reference, Vec2f u) const override;
-  Rgb power() const override { return radiance_ * (kPi * shape_.area()); }
+  Rgb power() const override { return radiance_ * ((both_sides_ ? kTwoPi : kPi) * shape_.area()); }
 
-  // Radiance that leaves `point` towards -wi, where wi is the direction in which the point is seen. Zero on the back.
-  Rgb radiance(const SurfacePoint& point, Vec3f wi) const { return dot(point.geometric_normal, wi) < 0 ? radiance_ : Rgb{}; }
+  // Radiance that leaves `point` towards -wi, where wi is the direction in which the point is seen. Zero on a back that is dark.
+  Rgb radiance(const SurfacePoint& point, Vec3f wi) const {
+    return dot(point.geometric_normal, wi) < 0 || both_sides_ ? radiance_ : Rgb{};
+  }
   const Shape& shape() const { return shape_; }
 
  private:
   const Shape& shape_;
   Rgb radiance_;
+  bool both_sides_;
 };
 
 class PointEmitter final : public Emitter {

@@ -24,6 +24,13 @@ TriangleMesh::Corners TriangleMesh::corners(std::uint32_t triangle) const {
   return {data_.positions[index[0]], data_.positions[index[1]], data_.positions[index[2]]};
 }
 
+Vec3f TriangleMesh::vertex_normal(const Hit& hit) const {
+  if (data_.normals.empty()) return {};
+  const std::uint32_t* index = data_.indices.data() + 3 * static_cast<std::size_t>(hit.primitive);
+  return side_ *
+         ((1 - hit.u - hit.v) * data_.normals[index[0]] + hit.u * data_.normals[index[1]] + hit.v * data_.normals[index[2]]);
+}
+
 SurfacePoint TriangleMesh::surface_point(const Ray&, const Hit& hit) const {
   const auto [a, b, c] = corners(hit.primitive);
   const Vec3f e1 = b - a, e2 = c - a;

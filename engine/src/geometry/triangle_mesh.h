@@ -32,15 +32,18 @@ class TriangleMesh final : public Shape {
   float area() const override { return area_; }
   Bounds bounds() const override;
 
-  const Data& data() const { return data_; }
-  std::size_t triangles() const { return data_.indices.size() / 3; }
-
- private:
   struct Corners {
     Vec3f a, b, c;
   };
   Corners corners(std::uint32_t triangle) const;
+  // Interpolated normal of the vertices on the front side, not normalised; 0 0 0 without any.
+  Vec3f vertex_normal(const Hit& hit) const;
 
+  const Data& data() const { return data_; }
+  std::size_t triangles() const { return data_.indices.size() / 3; }
+  bool flipped() const { return side_ < 0; }
+
+ private:
   Data data_;
   float side_;  // -1 when flipped
   float area_ = 0;

@@ -47,6 +47,10 @@ fs::path Bundle::find(const std::string& filename, const std::string& place) con
   return find_inside(folder_, entry_.parent_path(), filename, place);
 }
 
+fs::path Bundle::find_beside(const fs::path& from, const std::string& filename, const std::string& place) const {
+  return find_inside(folder_, from.parent_path(), filename, place);
+}
+
 std::string Bundle::name(const fs::path& file) const { return file.lexically_relative(folder_).generic_string(); }
 
 std::string read_file(const fs::path& file, const std::string& name, std::uintmax_t max_bytes) {

@@ -16,6 +16,9 @@ class Bundle {
   // SceneError if it does not exist, is not a plain file, or leaves the folder, by "..", an absolute path or a symbolic link.
   std::filesystem::path find(const std::string& filename, const std::string& place) const;
 
+  // The same for what the found file `from` calls `filename`, relative to that file's folder.
+  std::filesystem::path find_beside(const std::filesystem::path& from, const std::string& filename, const std::string& place) const;
+
   // Path of a found file as messages show it: relative to the folder.
   std::string name(const std::filesystem::path& file) const;
 

@@ -72,6 +72,7 @@ constexpr KnownPlugin kKnownPlugins[] = {
     {"cube", PluginKind::kShape},
     {"sphere", PluginKind::kShape},
     {"disk", PluginKind::kShape},
+    {"gltf", PluginKind::kShape},
     {"area", PluginKind::kEmitter},
     {"point", PluginKind::kEmitter},
     {"spot", PluginKind::kEmitter},

@@ -123,6 +123,7 @@ bool MaterialReader::transmits(int material) const {
     bool operator()(const NullDescription&) const { return true; }
     bool operator()(const MaskDescription&) const { return true; }
     bool operator()(const PrincipledDescription& d) const { return d.spec_trans.factor > 0; }
+    bool operator()(const GltfDescription& d) const { return d.transmission > 0; }
     bool operator()(const BlendDescription& d) const { return reader.transmits(d.first) || reader.transmits(d.second); }
     bool operator()(const NormalMapDescription& d) const { return reader.transmits(d.material); }
     bool operator()(const BumpMapDescription& d) const { return reader.transmits(d.material); }

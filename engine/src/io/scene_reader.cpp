@@ -1,25 +1,30 @@
 #include "io/scene_reader.h"
 
-#include <algorithm>
-
 #include "io/mitsuba_json.h"
 #include "io/properties.h"
 #include "io/read_emitter.h"
+#include "io/read_gltf.h"
 #include "io/read_sensor.h"
 #include "io/read_shape.h"
+#include "io/scene_light.h"
 #include "io/text.h"
 #include "support/error.h"
 
 namespace fluxfarm {
 namespace {
 
+void check_no_overrides(const std::string& name, const SceneOverrides& overrides) {
+  if (!overrides.empty())
+    throw SceneError(name, "takes no value for $" + overrides.begin()->first + ": only XML scenes have such names");
+}
+
 PluginNode read_tree(const Bundle& bundle, const SceneOverrides& overrides) {
   const std::string extension = bundle.entry().extension().string();
   if (extension == ".xml") return read_mitsuba_xml(bundle, overrides);
   const std::string name = bundle.name(bundle.entry());
-  if (extension != ".json") throw SceneError(name, "has the extension " + in_quotes(extension) + ", expected .xml or .json");
-  if (!overrides.empty())
-    throw SceneError(name, "takes no value for $" + overrides.begin()->first + ": only XML scenes have such names");
+  if (extension != ".json")
+    throw SceneError(name, "has the extension " + in_quotes(extension) + ", expected .xml, .json, .glb or .gltf");
+  check_no_overrides(name, overrides);
   return read_mitsuba_json(bundle);
 }
 
@@ -47,24 +52,6 @@ void check_media_used(const PluginNode& scene, const MediumReader& media) {
   }
 }
 
-bool is_black(const PointEmitterDescription& point) { return point.intensity.is_black(); }
-bool is_black(const SpotEmitterDescription& spot) { return spot.intensity.is_black(); }
-bool is_black(const DirectionalEmitterDescription& light) { return light.irradiance.is_black(); }
-bool is_black(const ConstantEmitterDescription& constant) { return constant.radiance.is_black(); }
-
-bool is_black(const EnvmapEmitterDescription& map) {
-  return std::all_of(map.image.pixels.begin(), map.image.pixels.end(), [](Rgb pixel) { return pixel.is_black(); });
-}
-
-bool has_light(const SceneDescription& scene) {
-  const bool shines = std::any_of(scene.shapes.begin(), scene.shapes.end(), [](const ShapeDescription& shape) {
-    return shape.emitted_radiance && !shape.emitted_radiance->is_black();
-  });
-  return shines || std::any_of(scene.emitters.begin(), scene.emitters.end(), [](const EmitterDescription& emitter) {
-           return !std::visit([](const auto& described) { return is_black(described); }, emitter);
-         });
-}
-
 // Without a texture that shows them, the colours of meshes are not kept.
 void drop_unused_colors(SceneDescription& scene) {
   const auto shows_colors = [](const TextureDescription& t) { return std::holds_alternative<MeshAttributeDescription>(t); };
@@ -86,7 +73,13 @@ SceneDescription build(const PluginNode& root, const Bundle& bundle) {
   const PluginNode* envmap = nullptr;
   for (const PluginNode& child : root.children) {
     switch (child.kind) {
-      case PluginKind::kShape: scene.shapes.push_back(read_shape(child, bundle, materials, media, scene.warnings)); break;
+      case PluginKind::kShape:
+        if (child.type == "gltf") {
+          read_gltf_node(child, bundle, scene);
+        } else {
+          scene.shapes.push_back(read_shape(child, bundle, materials, media, scene.warnings));
+        }
+        break;
       case PluginKind::kEmitter:
         if (child.type == "envmap" && envmap)
           throw SceneError(child.place, "the scene has a second envmap; the first is at " + envmap->place);
@@ -124,6 +117,11 @@ SceneDescription build(const PluginNode& root, const Bundle& bundle) {
 SceneDescription read_scene(const std::filesystem::path& folder, const std::filesystem::path& entry,
                             const SceneOverrides& overrides) {
   const Bundle bundle(folder, entry);
+  const std::string extension = bundle.entry().extension().string();
+  if (extension == ".glb" || extension == ".gltf") {
+    check_no_overrides(bundle.name(bundle.entry()), overrides);
+    return read_gltf_scene(bundle);
+  }
   return build(read_tree(bundle, overrides), bundle);
 }
 

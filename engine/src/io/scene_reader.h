@@ -8,7 +8,8 @@
 
 namespace fluxfarm {
 
-// Reads `entry`, a path relative to `folder`: Mitsuba XML (.xml) or the same plugin tree as JSON (.json). `overrides` gives
+// Reads `entry`, a path relative to `folder`: Mitsuba XML (.xml), the same plugin tree as JSON (.json), or glTF 2.0
+// (.glb, .gltf). `overrides` gives
 // values for $name that win over <default>; only XML has them. Nothing outside `folder` is opened.
 //
 // The result is complete and checked; what deserves a word but is no error (no light, triangles without area, a second sensor)

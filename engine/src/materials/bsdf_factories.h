@@ -16,6 +16,7 @@ std::unique_ptr<Bsdf> make_rough_conductor(const RoughConductorDescription&);
 std::unique_ptr<Bsdf> make_rough_dielectric(const RoughDielectricDescription&);
 std::unique_ptr<Bsdf> make_plastic(const PlasticDescription&);
 std::unique_ptr<Bsdf> make_rough_plastic(const RoughPlasticDescription&);
+std::unique_ptr<Bsdf> make_gltf(const GltfDescription&);
 std::unique_ptr<Bsdf> make_principled(const PrincipledDescription&);
 
 std::unique_ptr<Bsdf> make_thin_dielectric(const ThinDielectricDescription&);

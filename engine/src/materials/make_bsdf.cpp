@@ -29,6 +29,7 @@ class Maker {
   std::unique_ptr<Bsdf> operator()(const PlasticDescription& d) { return make_plastic(d); }
   std::unique_ptr<Bsdf> operator()(const RoughPlasticDescription& d) { return make_rough_plastic(d); }
   std::unique_ptr<Bsdf> operator()(const PrincipledDescription& d) { return make_principled(d); }
+  std::unique_ptr<Bsdf> operator()(const GltfDescription& d) { return make_gltf(d); }
   std::unique_ptr<Bsdf> operator()(const ThinDielectricDescription& d) { return make_thin_dielectric(d); }
   std::unique_ptr<Bsdf> operator()(const NullDescription&) { return make_null(); }
   std::unique_ptr<Bsdf> operator()(const MaskDescription& d) { return make_mask(held("material", d.material), d.opacity.factor); }

@@ -62,6 +62,7 @@ class Maker {
   Result operator()(const PrincipledDescription& d) const {
     return has_texture(d) ? make_textured_principled(d, textures_) : nullptr;
   }
+  Result operator()(const GltfDescription& d) const { return make_textured_gltf(d, textures_); }
   Result operator()(const ThinDielectricDescription& d) const {
     const TintedDescription tinted = tinted_dielectric(d.dielectric);
     if (tinted.reflected == nullptr && tinted.transmitted == nullptr) return nullptr;

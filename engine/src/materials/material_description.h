@@ -83,6 +83,33 @@ struct PrincipledDescription {
   float eta = 1.5f;  // interior over exterior index of refraction
 };
 
+// glTF 2.0's metallic-roughness model with the KHR extensions specular, ior, transmission, clearcoat, sheen and anisotropy.
+// Scatters on both sides. Texture channels as glTF has them: metallic B, roughness G; transmission R, clear coat R and its
+// roughness G; colours RGB. Each multiplies its constant.
+struct GltfDescription {
+  Rgb base_color{1.0f};
+  float metallic = 1;
+  float roughness = 1;  // perceptual: the GGX alpha is its square
+  float ior = 1.5f;     // interior over exterior; 0 reflects all at every angle
+  float specular = 1;   // of the dielectric part
+  Rgb specular_color{1.0f};
+  float transmission = 0;         // share of what would be diffuse
+  bool thin = true;               // transmits without refraction, as a pane; else it bounds a volume on the side of -z
+  float anisotropy = 0;           // [0,1], rougher along the tangent
+  float anisotropy_rotation = 0;  // radians, from the tangent towards the bitangent
+  float clearcoat = 0;
+  float clearcoat_roughness = 0;
+  Rgb sheen_color{0.0f};
+  float sheen_roughness = 0;
+  int base_color_texture = kNoTexture;
+  int metallic_roughness_texture = kNoTexture;
+  int transmission_texture = kNoTexture;
+  int specular_color_texture = kNoTexture;
+  int clearcoat_texture = kNoTexture;
+  int clearcoat_roughness_texture = kNoTexture;
+  int sheen_color_texture = kNoTexture;
+};
+
 // Front and back are indices into the same list of materials; neither may transmit light.
 struct TwosidedDescription {
   int front = 0;
@@ -127,7 +154,7 @@ struct BumpMapDescription {
 
 using MaterialDescription = std::variant<DiffuseDescription, DielectricDescription, ConductorDescription, RoughConductorDescription,
                                          RoughDielectricDescription, PlasticDescription, RoughPlasticDescription,
-                                         PrincipledDescription, TwosidedDescription, ThinDielectricDescription, NullDescription,
+                                         PrincipledDescription, GltfDescription, TwosidedDescription, ThinDielectricDescription, NullDescription,
                                          MaskDescription, BlendDescription, NormalMapDescription, BumpMapDescription>;
 
 }  // namespace fluxfarm

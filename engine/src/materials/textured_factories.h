@@ -15,6 +15,7 @@ namespace fluxfarm {
 std::unique_ptr<TexturedMaterial> make_textured_rough_conductor(const RoughConductorDescription&, const Textures&);
 std::unique_ptr<TexturedMaterial> make_textured_plastic(const PlasticDescription&, const Textures&);
 std::unique_ptr<TexturedMaterial> make_textured_rough_plastic(const RoughPlasticDescription&, const Textures&);
+std::unique_ptr<TexturedMaterial> make_textured_gltf(const GltfDescription&, const Textures&);  // null without textures
 std::unique_ptr<TexturedMaterial> make_textured_principled(const PrincipledDescription&, const Textures&);
 
 std::unique_ptr<TexturedMaterial> make_textured_twosided(NestedMaterial front, NestedMaterial back);

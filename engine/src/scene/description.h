@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <variant>
@@ -33,6 +34,13 @@ struct MeshDescription {
   std::vector<Rgb> colors{};           // linear Rec.709, in [0, 1]
 };
 
+// A mesh in its own space, placed in the world. Descriptions that point to the same mesh share it: it is kept once, however often
+// it is placed. The front stays on its side, also under a mirroring transform. Never emissive.
+struct InstanceDescription {
+  std::shared_ptr<const MeshDescription> mesh;
+  Transform to_world;  // invertible
+};
+
 // Image of the square [-1,1]^2 x {0} with normal +z under an affine map.
 struct RectangleDescription {
   Transform to_world;
@@ -52,10 +60,11 @@ struct SphereDescription {
 
 struct ShapeDescription {
   std::string name;  // id of the shape in the scene file, or its place there; for messages
-  std::variant<MeshDescription, RectangleDescription, DiskDescription, SphereDescription> geometry;
+  std::variant<MeshDescription, RectangleDescription, DiskDescription, SphereDescription, InstanceDescription> geometry;
   bool flip_normals = false;            // swaps front and back; the compiled scene applies it, the reader does not
   int material = 0;                     // index into SceneDescription::materials
   std::optional<Rgb> emitted_radiance;  // area emitter on the front side
+  bool emits_on_both_sides = false;     // then on the back side, too
   // Indices into SceneDescription::media. With either, a ray that leaves the surface goes into the one on its side; with none, it
   // stays in the medium in which it came.
   int interior_medium = kNoMedium;  // behind the front side

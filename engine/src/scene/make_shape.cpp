@@ -32,13 +32,35 @@ std::unique_ptr<Sphere> make(const SphereDescription& sphere, bool flipped, bool
 
 }  // namespace
 
-std::unique_ptr<Shape> add_shape(const ShapeDescription& description, bool emissive, RayAccelerator& accelerator) {
+const SharedMeshes::Entry& SharedMeshes::of(const std::shared_ptr<const MeshDescription>& description, bool flipped) {
+  Entry& entry = meshes_[flipped][description.get()];
+  if (entry.mesh == nullptr) {
+    entry.mesh = make(*description, flipped, false);
+    entry.bounds = entry.mesh->bounds();
+  }
+  return entry;
+}
+
+std::unique_ptr<Shape> add_shape(const ShapeDescription& description, bool emissive, SharedMeshes& shared,
+                                 RayAccelerator& accelerator) {
+  if (const auto* instance = std::get_if<InstanceDescription>(&description.geometry)) {
+    if (emissive) throw SceneError(description.name, "an instance emits light, expected a mesh of its own for each light");
+    const SharedMeshes::Entry& entry = shared.of(instance->mesh, description.flip_normals);
+    if (!(entry.mesh->area() > 0)) throw SceneError(description.name, "the shape has no area");
+    auto shape = std::make_unique<MeshInstance>(*entry.mesh, entry.bounds, instance->to_world);
+    accelerator.add(*shape);
+    return shape;
+  }
   return std::visit(
       [&](const auto& geometry) -> std::unique_ptr<Shape> {
-        auto shape = make(geometry, description.flip_normals, emissive);
-        if (!(shape->area() > 0)) throw SceneError(description.name, "the shape has no area");
-        accelerator.add(*shape);
-        return shape;
+        if constexpr (std::is_same_v<std::decay_t<decltype(geometry)>, InstanceDescription>) {
+          return nullptr;  // made above
+        } else {
+          auto shape = make(geometry, description.flip_normals, emissive);
+          if (!(shape->area() > 0)) throw SceneError(description.name, "the shape has no area");
+          accelerator.add(*shape);
+          return shape;
+        }
       },
       description.geometry);
 }

@@ -38,6 +38,14 @@ class Collector {
     needs_.anisotropic |= d.anisotropic.factor > 0;
     needs_.tangents |= needs_.anisotropic;
   }
+  void operator()(const GltfDescription& d) {
+    for (const int index : {d.base_color_texture, d.metallic_roughness_texture, d.transmission_texture, d.specular_color_texture,
+                            d.clearcoat_texture, d.clearcoat_roughness_texture, d.sheen_color_texture}) {
+      texture(index);
+    }
+    needs_.anisotropic |= d.anisotropy > 0;
+    needs_.tangents |= needs_.anisotropic;
+  }
   void operator()(const TwosidedDescription& d) {
     held(d.front);
     held(d.back);

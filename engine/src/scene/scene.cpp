@@ -1,6 +1,7 @@
 #include "scene/scene.h"
 
 #include <algorithm>
+#include <unordered_set>
 
 #include "materials/make_bsdf.h"
 #include "materials/make_textured.h"
@@ -54,9 +55,10 @@ Scene::Scene(const SceneDescription& description, int threads)
   census_.media = media_.size();
   census_.coloured_media = std::any_of(media_.begin(), media_.end(), [](const HomogeneousMedium& m) { return m.coloured(); });
   surfaces_.reserve(description.shapes.size());
+  std::unordered_set<const TriangleMesh*> counted;  // of those that instances share
   for (const ShapeDescription& shape : description.shapes) {
     Surface surface;
-    surface.shape = add_shape(shape, shape.emitted_radiance.has_value(), *accelerator_);
+    surface.shape = add_shape(shape, shape.emitted_radiance.has_value(), shared_meshes_, *accelerator_);
     const Bsdf* bsdf = bsdfs_[static_cast<std::size_t>(shape.material)].get();
     const Bsdf::Sides sides = bsdf->sides();
     surface.front = sides.front != nullptr ? sides.front : bsdf;
@@ -83,13 +85,16 @@ Scene::Scene(const SceneDescription& description, int threads)
     const bool null = is_null(description.materials[static_cast<std::size_t>(shape.material)]);
     census_.null_boundaries |= null;
     census_.delta_materials |= !surface.has_continuous_lobe && !shape.emitted_radiance && !null;
-    const auto* mesh = dynamic_cast<const TriangleMesh*>(surface.shape.get());
+    const auto* instance = dynamic_cast<const MeshInstance*>(surface.shape.get());
+    const auto* mesh = instance != nullptr ? &instance->mesh() : dynamic_cast<const TriangleMesh*>(surface.shape.get());
+    census_.instances += instance != nullptr;
     if (needs.vertex_colors && (mesh == nullptr || mesh->data().colors.empty())) {
       throw SceneError(shape.name,
                        "its material shows the attribute vertex_color, which the shape lacks; expected a mesh with colours");
     }
     if (needs.vertex_colors) check_colors(shape.name, mesh->data().colors);
-    if (mesh != nullptr) {
+    const bool first_use = instance == nullptr || counted.insert(mesh).second;
+    if (mesh != nullptr && first_use) {
       census_.triangles += mesh->triangles();
       census_.shading_normals |= !mesh->data().normals.empty();
       if (needs.uvs && mesh->data().uvs.empty()) {
@@ -97,7 +102,7 @@ Scene::Scene(const SceneDescription& description, int threads)
       }
     }
     if (shape.emitted_radiance) {
-      area_emitters_.push_back(std::make_unique<AreaEmitter>(*surface.shape, *shape.emitted_radiance));
+      area_emitters_.push_back(std::make_unique<AreaEmitter>(*surface.shape, *shape.emitted_radiance, shape.emits_on_both_sides));
       surface.emitter = area_emitters_.back().get();
     }
     surfaces_.push_back(std::move(surface));

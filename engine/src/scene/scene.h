@@ -15,13 +15,16 @@
 #include "media/homogeneous_medium.h"
 #include "scene/camera.h"
 #include "scene/description.h"
+#include "scene/make_shape.h"
 #include "textures/make_texture.h"
 
 namespace fluxfarm {
 
 // What the scene contains, counted at load: the facts by which parts of the engine are built or left out.
 struct Census {
-  std::size_t shapes = 0, triangles = 0;
+  std::size_t shapes = 0;
+  std::size_t triangles = 0;  // of meshes, each counted once however often it is placed
+  std::size_t instances = 0;  // placed meshes that share their triangles
   std::size_t area_emitters = 0, point_emitters = 0, spot_emitters = 0, directional_emitters = 0;
   bool environment = false;      // a constant one
   bool environment_map = false;  // an image
@@ -117,6 +120,7 @@ class Scene {
   std::vector<HomogeneousMedium> media_;
   const HomogeneousMedium* camera_medium_ = nullptr;
   std::vector<Boundary> boundaries_;  // one for each surface; empty without media and null boundaries
+  SharedMeshes shared_meshes_;
   std::vector<Surface> surfaces_;
   std::vector<std::unique_ptr<AreaEmitter>> area_emitters_;
   std::vector<std::unique_ptr<Emitter>> free_emitters_;  // those without a shape

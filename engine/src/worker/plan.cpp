@@ -22,6 +22,7 @@ std::string plan_json(const Scene& scene) {
       {"census",
        {{"shapes", census.shapes},
         {"triangles", census.triangles},
+        {"instances", census.instances},
         {"materials", census.materials},
         {"textures", census.textures},
         {"area_emitters", census.area_emitters},
@@ -55,6 +56,7 @@ std::string plan_json(const Scene& scene) {
         part("media channels", census.coloured_media,
              census.coloured_media ? "a medium whose extinction has a colour" : "no extinction has a colour"),
         part("textures", census.textures > 0, count(census.textures, "texture")),
+        part("instances", census.instances > 0, count(census.instances, "instance") + " of shared meshes"),
         part("shading normals", census.shading_normals,
              census.shading_normals ? "a mesh with normals" : "all surfaces flat or exact")}}};
   return plan.dump();

@@ -16,7 +16,8 @@ struct Place {
 template <typename Geometry>
 Place place_below(const Geometry& geometry, Vec3f origin, bool flip_normals = false) {
   RayAccelerator accelerator(1);
-  const auto shape = add_shape({"test shape", geometry, flip_normals, 0, {}}, false, accelerator);
+  SharedMeshes shared;
+  const auto shape = add_shape({"test shape", geometry, flip_normals, 0, {}}, false, shared, accelerator);
   accelerator.build();
   const Ray ray{origin, {0, 0, -1}};
   Hit hit;
@@ -47,7 +48,8 @@ SphereDescription sphere(const Transform& to_world, Vec3f center, float radius) 
 template <typename Geometry>
 void expect_derivatives_lead_along_uv(const Geometry& geometry, Vec3f origin, bool flip_normals = false) {
   RayAccelerator accelerator(1);
-  const auto shape = add_shape({"test shape", geometry, flip_normals, 0, {}}, false, accelerator);
+  SharedMeshes shared;
+  const auto shape = add_shape({"test shape", geometry, flip_normals, 0, {}}, false, shared, accelerator);
   accelerator.build();
   const auto meet = [&](Vec3f from) {
     const Ray ray{from, {0, 0, -1}};
@@ -94,7 +96,8 @@ TEST(VertexColours, LieBetweenThoseOfTheCorners) {
   mesh.colors = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
   mesh.indices = {0, 1, 2};
   RayAccelerator accelerator(1);
-  const auto shape = add_shape({"test shape", mesh, false, 0, {}}, false, accelerator);
+  SharedMeshes shared;
+  const auto shape = add_shape({"test shape", mesh, false, 0, {}}, false, shared, accelerator);
   Hit hit;
   hit.u = 0.2f;
   hit.v = 0.3f;

@@ -111,7 +111,7 @@ TEST(BadScene, MissingFileIsNamedWithThePlaceThatAsksForIt) {
             "scene.xml:2: shape \"obj\": lacks the parameter \"filename\"");
   folder.write("scene.blend", "");
   EXPECT_EQ(error_of([&] { read_scene(folder.path(), "scene.blend"); }),
-            "scene.blend: has the extension \".blend\", expected .xml or .json");
+            "scene.blend: has the extension \".blend\", expected .xml, .json, .glb or .gltf");
 }
 
 TEST(BadScene, PathsThatLeaveTheFolderAreNotOpened) {

@@ -44,6 +44,18 @@ class Describer {
     }
     out_ << "\n";
   }
+  void write(const InstanceDescription& i) {
+    write("instance", i.to_world);
+    write(*i.mesh);
+  }
+  void write(const GltfDescription& d) {
+    write("gltf base_color", d.base_color);
+    write("specular_color", d.specular_color);
+    write("sheen_color", d.sheen_color);
+    out_ << d.metallic << " " << d.roughness << " " << d.ior << " " << d.specular << " " << d.transmission << " " << d.thin << " "
+         << d.anisotropy << " " << d.anisotropy_rotation << " " << d.clearcoat << " " << d.clearcoat_roughness << " "
+         << d.sheen_roughness << "\n";
+  }
   void write(const CheckerboardDescription& t) {
     write("color0", t.color0);
     write("color1", t.color1);

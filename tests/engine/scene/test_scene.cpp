@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "scene/scene.h"
+#include "support/error.h"
 #include "support/scene_builder.h"
 #include "support/sky.h"
 
@@ -232,6 +233,38 @@ TEST(Census, CountsWhatIsThere) {
   EXPECT_FALSE(scene.census().environment);
   EXPECT_FALSE(scene.census().anisotropic_materials);
   EXPECT_EQ(scene.census().textures, 0u);
+}
+
+TEST(Instances, AreCountedOnceAndNeverLights) {
+  testing::SceneBuilder builder;
+  const int grey = builder.diffuse(0.5f);
+  const auto shared = std::make_shared<const MeshDescription>(testing::cube(Transform()));
+  for (const double x : {0.0, 3.0, 6.0}) builder.shape(InstanceDescription{shared, Transform::translate(x, 0, 0)}, grey);
+  const Scene scene(builder.description(), 1);
+  EXPECT_EQ(scene.census().instances, 3u);
+  EXPECT_EQ(scene.census().triangles, 12u);
+  EXPECT_EQ(scene.census().shapes, 3u);
+  Hit hit;
+  ASSERT_TRUE(scene.accelerator().intersect({{3, 0, 9}, {0, 0, -1}}, hit));
+  EXPECT_EQ(hit.shape, 1u);
+  builder.shape(InstanceDescription{shared, Transform()}, grey, 1);
+  EXPECT_THROW(Scene(builder.description(), 1), SceneError);
+}
+
+TEST(AreaEmitter, ShinesOnBothSidesOnlyIfToldSo) {
+  const Rectangle lamp({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, false);
+  const AreaEmitter one(lamp, Rgb{2}), both(lamp, Rgb{2}, true);
+  for (const float z : {3.0f, -3.0f}) {
+    const auto light = both.sample({0, 0, z}, {0.3f, 0.7f});
+    ASSERT_TRUE(light);
+    EXPECT_GT(light->normal.z * z, 0);  // towards the reference, so that a shadow ray ends on its side
+    EXPECT_EQ(one.sample({0, 0, z}, {0.3f, 0.7f}).has_value(), z > 0);
+    SurfacePoint point;
+    point.geometric_normal = {0, 0, 1};
+    EXPECT_EQ(both.radiance(point, {0, 0, z > 0 ? -1.0f : 1.0f}), Rgb{2});
+    EXPECT_EQ(one.radiance(point, {0, 0, z > 0 ? -1.0f : 1.0f}), z > 0 ? Rgb{2} : Rgb{});
+  }
+  EXPECT_FLOAT_EQ(both.power().r, 2 * one.power().r);
 }
 
 }  // namespace

@@ -1,7 +1,8 @@
 """Finds the files that a scene references, so that exactly those are sent.
 
 Reads Mitsuba XML and its JSON form just well enough for that: `filename` members, `<include>`, and `$name` from
-`<default>`. What it cannot parse it sends alone; the engine then reports the error with file and line.
+`<default>`; and of glTF the URIs of buffers and images, which are relative to the glTF file.
+What it cannot parse it sends alone; the engine then reports the error with file and line.
 """
 
 import hashlib
@@ -12,11 +13,13 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
+from urllib.parse import unquote
 from xml.parsers import expat
 
 from fluxfarm.cli.exits import CommandError, Exit
 
 MAX_INCLUDE_DEPTH = 15
+GLTF_SUFFIXES = {".gltf", ".glb"}
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,6 +79,8 @@ def _collect_from(file: Path, base: Path, places: set[Path], names: dict[str, st
             places.add(place)
             if reference.include:
                 _collect_from(place, base, places, names, depth + 1)
+            elif place.suffix.lower() in GLTF_SUFFIXES:
+                _collect_from(place, place.parent, places, {}, depth + 1)
 
 
 def references(file: Path, names: dict[str, str]) -> Iterator[Reference]:
@@ -88,6 +93,8 @@ def references(file: Path, names: dict[str, str]) -> Iterator[Reference]:
         yield from _json_references(text, names)
     elif file.suffix.lower() == ".xml":
         yield from _xml_references(text, names)
+    elif file.suffix.lower() in GLTF_SUFFIXES:
+        yield from _gltf_references(text)
 
 
 def _xml_references(text: bytes, names: dict[str, str]) -> list[Reference]:
@@ -134,6 +141,25 @@ def _json_references(text: bytes, names: dict[str, str]) -> list[Reference]:
             waiting.extend(node.values())
         elif isinstance(node, list):
             waiting.extend(node)
+    return found
+
+
+def _gltf_references(text: bytes) -> list[Reference]:
+    """Files that buffers and images name; a binary file has its document after 20 bytes."""
+    if text[:4] == b"glTF":
+        text = text[20 : 20 + int.from_bytes(text[12:16], "little")]
+    try:
+        root = json.loads(text)
+    except (ValueError, RecursionError):
+        return []
+    found: list[Reference] = []
+    for kind in ("buffers", "images"):
+        elements = root.get(kind) if isinstance(root, dict) else None
+        for element in elements if isinstance(elements, list) else []:
+            uri = element.get("uri") if isinstance(element, dict) else None
+            if isinstance(uri, str) and not uri.startswith("data:"):
+                line = text.count(b"\n", 0, max(0, text.find(json.dumps(uri).encode()))) + 1
+                found.append(Reference(unquote(uri), line, False))
     return found
 
 
