@@ -51,6 +51,7 @@ Scene::Scene(const SceneDescription& description, int threads)
     surface.front = sides.front != nullptr ? sides.front : bsdf;
     surface.back = sides.back != nullptr ? sides.back : bsdf;
     surface.two_sided = sides.front != nullptr;
+    surface.transmits = bsdf->transmits();
     surface.has_continuous_lobe = bsdf->has_continuous_lobe();
     surface.chooses_lobe = bsdf->chooses_lobe();
     surface.anisotropic = is_anisotropic(description.materials, description.materials[shape.material]);
@@ -88,13 +89,13 @@ Scene::Scene(const SceneDescription& description, int threads)
   for (const auto& emitter : area_emitters_) emitters.push_back(emitter.get());
   for (const auto& emitter : free_emitters_) emitters.push_back(emitter.get());
   emitter_choice_ = EmitterChoice(emitters);
-  std::size_t index = 0;
+  std::uint32_t index = 0;
   for (Surface& surface : surfaces_) {
-    if (surface.emitter != nullptr) surface.choice_probability = emitter_choice_.probability(index++);
+    if (surface.emitter != nullptr) surface.emitter_index = index++;
   }
   for (const auto& emitter : free_emitters_) {
     const auto* map = dynamic_cast<const EnvmapEmitter*>(emitter.get());
-    if (map != nullptr) environment_map_ = {map, emitter_choice_.probability(index)};
+    if (map != nullptr) environment_map_ = {map, emitter_choice_.distant_probability(index)};
     ++index;
   }
   census_.shapes = surfaces_.size();
