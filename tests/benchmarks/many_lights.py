@@ -56,9 +56,9 @@ def write(folder: Path, count: int) -> Path:
         # Evenly over the floor (R2 sequence), so that ten are spread as a thousand are.
         x, z = (((i + 0.5) * step) % 1 * 18 - 9 for step in (0.7548776662, 0.5698402910))
         r, g, b = 40 * strengths[i] * generator.uniform(0.5, 1.5, 3)
-        turn = f'<rotate x="1" angle="90"/><rotate x="1" z="0.3" angle="{generator.uniform(-60, 60):.3f}"/>'
+        turn = f'<rotate x="1" angle="90"/><rotate x="1" z="0.3" angle="{generator.uniform(-30, 30):.3f}"/>'
         parts.append(
-            LAMP.format(shape="rectangle", turn=turn, size=side, x=x, y=generator.uniform(1, 4), z=z, r=r, g=g, b=b)
+            LAMP.format(shape="rectangle", turn=turn, size=side, x=x, y=4.2, z=z, r=r, g=g, b=b)
         )
     folder.mkdir(parents=True, exist_ok=True)
     scene = folder / "scene.xml"

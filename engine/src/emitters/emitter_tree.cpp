@@ -3,18 +3,21 @@
 namespace fluxfarm {
 namespace {
 
-// An angle in [0, pi].
+// Cosine and sine of an angle in [0, pi].
 struct Angle {
   float cosine, sine;
 };
 
 // a - b, or 0 if b is larger.
-Angle minus(Angle a, Angle b) {
-  const bool none = a.cosine >= b.cosine;
-  return {none ? 1.0f : a.cosine * b.cosine + a.sine * b.sine, none ? 0.0f : a.sine * b.cosine - a.cosine * b.sine};
+inline Angle minus(Angle a, Angle b) {
+  const float cosine = a.cosine * b.cosine + a.sine * b.sine, sine = a.sine * b.cosine - a.cosine * b.sine;
+  return {a.cosine >= b.cosine ? 1.0f : cosine, a.cosine >= b.cosine ? 0.0f : sine};
 }
 
-Angle angle_of(float cosine) { return {cosine, safe_sqrt(1 - cosine * cosine)}; }
+inline Angle angle_of(float cosine) {
+  const float squared = 1 - cosine * cosine;
+  return {cosine, std::sqrt(squared > 0 ? squared : 0.0f)};
+}
 
 }  // namespace
 
@@ -22,24 +25,27 @@ Angle angle_of(float cosine) { return {cosine, safe_sqrt(1 - cosine * cosine)}; 
 // Without branches, so that the compiler makes vectors of the lanes.
 EmitterTree::Importances EmitterTree::importances(const Block& block, const EmitterReference& reference) {
   const Vec3f p = reference.position, n = reference.normal;
-  const bool from_all_around = n == Vec3f{};
+  // Added to the cosine at the reference: enough that all directions are alike.
+  const float all_around = n == Vec3f{} ? 1.0f : 0.0f;
+  const float other_side = reference.both_sides ? -1.0f : 1.0f;  // the factor of a cosine below zero
   Importances result;
   for (std::size_t i = 0; i < kWidth; ++i) {
     const Vec3f d{block.center_x[i] - p.x, block.center_y[i] - p.y, block.center_z[i] - p.z};
     const float squared = length_squared(d), radius_squared = block.radius_squared[i];
-    const Vec3f wi = d * (1 / std::sqrt(squared));
-    const float sin_squared = std::min(radius_squared / squared, 1.0f);
+    // From inside, any direction is possible; the bound stays finite.
+    const bool inside = squared <= radius_squared;
+    const float bounded = inside ? radius_squared : squared;
+    const Vec3f wi = d * (1 / std::sqrt(bounded));
+    const float sin_squared = radius_squared / bounded;
     const Angle seen{std::sqrt(1 - sin_squared), std::sqrt(sin_squared)};
 
-    const float cos_axis = -dot(Vec3f{block.axis_x[i], block.axis_y[i], block.axis_z[i]}, wi);
+    const float cos_axis = -(block.axis_x[i] * wi.x + block.axis_y[i] * wi.y + block.axis_z[i] * wi.z);
     const float leaving = minus(minus(angle_of(cos_axis), {block.cos_spread[i], block.sin_spread[i]}), seen).cosine;
-    const float cosine = dot(n, wi);
-    const float facing = minus(angle_of(reference.both_sides ? std::fabs(cosine) : cosine), seen).cosine;
-    const float arriving = from_all_around ? 1.0f : facing;
+    const float cosine = dot(n, wi) + all_around;
+    const float arriving = minus(angle_of(cosine < 0 ? cosine * other_side : cosine), seen).cosine;
 
-    const float outside = leaving <= block.cos_reach[i] || arriving <= 0 ? 0.0f : leaving * arriving / squared;
-    // From inside, any direction is possible; the bound stays finite.
-    result.of[i] = block.intensity[i] * (squared <= radius_squared ? 1 / radius_squared : outside);
+    const float from_outside = leaving > block.cos_reach[i] ? leaving * (arriving > 0 ? arriving : 0.0f) : 0.0f;
+    result.of[i] = block.intensity[i] / bounded * (inside ? 1.0f : from_outside);
   }
   result.sum = 0;
   for (const float importance : result.of) result.sum += importance;
