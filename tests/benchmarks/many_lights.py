@@ -57,9 +57,7 @@ def write(folder: Path, count: int) -> Path:
         x, z = (((i + 0.5) * step) % 1 * 18 - 9 for step in (0.7548776662, 0.5698402910))
         r, g, b = 40 * strengths[i] * generator.uniform(0.5, 1.5, 3)
         turn = f'<rotate x="1" angle="90"/><rotate x="1" z="0.3" angle="{generator.uniform(-30, 30):.3f}"/>'
-        parts.append(
-            LAMP.format(shape="rectangle", turn=turn, size=side, x=x, y=4.2, z=z, r=r, g=g, b=b)
-        )
+        parts.append(LAMP.format(shape="rectangle", turn=turn, size=side, x=x, y=4.2, z=z, r=r, g=g, b=b))
     folder.mkdir(parents=True, exist_ok=True)
     scene = folder / "scene.xml"
     scene.write_text("".join(parts) + "</scene>\n")
@@ -67,7 +65,7 @@ def write(folder: Path, count: int) -> Path:
 
 
 def measure(scene: Path, out: Path, spp: int, seeds: int) -> dict[str, float]:
-    reference, _ = render(scene, out, 64 * spp, 999)
+    reference, _ = render(scene, out, 16 * spp, 999)
     runs = []
     for seed in range(seeds):
         image, seconds = render(scene, out, spp, seed)
