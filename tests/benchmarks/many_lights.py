@@ -2,8 +2,8 @@
 
     .venv/bin/python tests/benchmarks/many_lights.py --out out/many-lights.json
 
-Time to equal error is seconds times relMSE at equal samples: error falls as 1 / samples. The promise is that a thousand cost at most
-twice the time of ten.
+Time to equal error is seconds times relMSE at equal samples: error falls as 1 / samples.
+The goal is that a thousand cost at most twice the time of ten.
 """
 
 import argparse
@@ -39,13 +39,14 @@ LAMP = """  <shape type="{shape}">
   </shape>
 """
 PILLAR = """  <shape type="cube">
-    <transform name="to_world"><scale x="0.3" y="2" z="0.3"/><translate x="{x}" y="2" z="{z}"/></transform><ref id="grey"/>
+    <transform name="to_world"><scale x="0.3" y="2" z="0.3"/><translate x="{x}" y="2" z="{z}"/></transform>
+    <ref id="grey"/>
   </shape>
 """
 
 
 def write(folder: Path, count: int) -> Path:
-    """Write a hall with `count` lamps of many colours, strengths and directions into `folder`; the path of the scene."""
+    """Write a hall with `count` lamps of many colours, strengths and directions; the path of the scene."""
     generator = np.random.default_rng(11)
     parts = [HALL]
     parts += [PILLAR.format(x=x, z=z) for x in (-6, -3, 0, 3, 6) for z in (-2, 2, 6)]
