@@ -15,6 +15,7 @@ class DirectionalEmitter final : public Emitter {
   std::optional<EmitterSample> sample(Vec3f, Vec2f) const override {
     return EmitterSample{{}, {}, -direction_, kDistant, irradiance_, 0, true};
   }
+  std::optional<EmitterBounds> bounds() const override { return std::nullopt; }
   // What falls on the disk that the scene's sphere shows to the light.
   Rgb power() const override { return irradiance_ * (kPi * scene_radius_ * scene_radius_); }
 

@@ -3,12 +3,21 @@
 namespace fluxfarm {
 
 std::optional<EmitterSample> AreaEmitter::sample(Vec3f reference, Vec2f u) const {
-  const std::optional<ShapeSample> s = shape_.sample(reference, u);
-  if (!s) return std::nullopt;
-  const bool back = dot(s->normal, s->wi) >= 0;
-  if (back && !both_sides_) return std::nullopt;
-  return EmitterSample{
-      s->position, back ? -s->normal : s->normal, s->wi, s->distance, radiance_ / s->pdf_solid_angle, s->pdf_solid_angle, false};
+  return emitted_from(shape_.sample(reference, u), radiance_, both_sides_);
+}
+
+std::optional<EmitterBounds> AreaEmitter::bounds() const {
+  EmitterBounds bounds;
+  bounds.box = shape_.bounds();
+  const std::optional<Vec3f> normal = shape_.plane_normal();
+  if (normal) {
+    bounds.axis = *normal;
+    bounds.spread = both_sides_ ? kPi : 0;
+    bounds.intensity = luminance(radiance_) * shape_.area();
+  } else {
+    bounds.intensity = luminance(radiance_) * shape_.area() / 4;  // seen from outside, a convex body shows a quarter of its area
+  }
+  return bounds;
 }
 
 std::optional<EmitterSample> PointEmitter::sample(Vec3f reference, Vec2f) const {
@@ -17,6 +26,13 @@ std::optional<EmitterSample> PointEmitter::sample(Vec3f reference, Vec2f) const 
   if (!(squared > 0)) return std::nullopt;
   const float distance = std::sqrt(squared);
   return EmitterSample{position_, {}, d / distance, distance, intensity_ / squared, 0, true};
+}
+
+std::optional<EmitterBounds> PointEmitter::bounds() const {
+  EmitterBounds bounds;
+  bounds.box.extend(position_);
+  bounds.intensity = luminance(intensity_);
+  return bounds;
 }
 
 }  // namespace fluxfarm

@@ -8,6 +8,7 @@
 #include <limits>
 #include <optional>
 
+#include "emitters/emitter_bounds.h"
 #include "geometry/shape.h"
 #include "math/rgb.h"
 #include "math/vec.h"
@@ -34,7 +35,18 @@ class Emitter {
   // Chooses a point of the emitter as seen from `reference`. Empty: no light can come from there.
   virtual std::optional<EmitterSample> sample(Vec3f reference, Vec2f u) const = 0;
   virtual Rgb power() const = 0;  // W; of light from outside, what the scene can catch
+  // Where it is and whither it shines. Empty: it is outside the scene.
+  virtual std::optional<EmitterBounds> bounds() const = 0;
 };
+
+// What a surface of that radiance sends from a chosen point of it. Empty: no point, or the reference point is behind it and it
+// shines from its front only.
+inline std::optional<EmitterSample> emitted_from(const std::optional<ShapeSample>& s, Rgb radiance, bool both_sides) {
+  if (!s) return std::nullopt;
+  const bool back = dot(s->normal, s->wi) >= 0;
+  if (back && !both_sides) return std::nullopt;
+  return EmitterSample{s->position, back ? -s->normal : s->normal, s->wi, s->distance, radiance / s->pdf_solid_angle, s->pdf_solid_angle, false};
+}
 
 class AreaEmitter final : public Emitter {
  public:
@@ -44,12 +56,15 @@ class AreaEmitter final : public Emitter {
 
   std::optional<EmitterSample> sample(Vec3f reference, Vec2f u) const override;
   Rgb power() const override { return radiance_ * ((both_sides_ ? kTwoPi : kPi) * shape_.area()); }
+  std::optional<EmitterBounds> bounds() const override;
 
   // Radiance that leaves `point` towards -wi, where wi is the direction in which the point is seen. Zero on a back that is dark.
   Rgb radiance(const SurfacePoint& point, Vec3f wi) const {
     return dot(point.geometric_normal, wi) < 0 || both_sides_ ? radiance_ : Rgb{};
   }
   const Shape& shape() const { return shape_; }
+  Rgb radiance() const { return radiance_; }
+  bool both_sides() const { return both_sides_; }
 
  private:
   const Shape& shape_;
@@ -64,6 +79,7 @@ class PointEmitter final : public Emitter {
 
   std::optional<EmitterSample> sample(Vec3f reference, Vec2f u) const override;
   Rgb power() const override { return intensity_ * (4 * kPi); }
+  std::optional<EmitterBounds> bounds() const override;
 
  private:
   Vec3f position_;

@@ -18,6 +18,7 @@ class EnvmapEmitter final : public Emitter {
   // The same from every reference point.
   std::optional<EmitterSample> sample(Vec3f reference, Vec2f u) const override;
   Rgb power() const override;
+  std::optional<EmitterBounds> bounds() const override { return std::nullopt; }
 
   // What arrives from `direction` (world, unit), W m^-2 sr^-1, and the density with which sample() chooses it, sr^-1.
   struct Arriving {

@@ -20,6 +20,17 @@ float SpotEmitter::falloff(Vec3f direction) const {
   return angle < cutoff_angle_ ? (cutoff_angle_ - angle) / (cutoff_angle_ - beam_width_) : 0.0f;
 }
 
+std::optional<EmitterBounds> SpotEmitter::bounds() const {
+  EmitterBounds bounds;
+  bounds.box.extend(position_);
+  bounds.axis = axis_;
+  // Light leaves up to spread + reach; the reach may not pass a right angle, where its cosine ends.
+  bounds.spread = std::max(beam_width_, cutoff_angle_ - kPi / 2);
+  bounds.reach = cutoff_angle_ - bounds.spread;
+  bounds.intensity = luminance(intensity_);
+  return bounds;
+}
+
 Rgb SpotEmitter::power() const {
   // 2 pi times the integral of falloff sin(theta); the beam's part and the slope's part together. In double precision: both
   // differences are small for narrow cones.

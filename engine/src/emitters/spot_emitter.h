@@ -14,6 +14,7 @@ class SpotEmitter final : public Emitter {
 
   std::optional<EmitterSample> sample(Vec3f reference, Vec2f u) const override;
   Rgb power() const override;
+  std::optional<EmitterBounds> bounds() const override;
 
   // Share of the full intensity that leaves in `direction` (world, unit).
   float falloff(Vec3f direction) const;

@@ -21,6 +21,7 @@ class Disk final : public Shape {
   float pdf(Vec3f reference, const SurfacePoint& point, std::uint32_t primitive, Vec3f wi, float distance) const override;
   float area() const override { return kPi * radius_ * radius_; }
   Bounds bounds() const override;
+  std::optional<Vec3f> plane_normal() const override { return normal_; }
 
   Vec3f center() const { return center_; }
   Vec3f normal() const { return normal_; }

@@ -20,6 +20,7 @@ class Rectangle final : public Shape {
   float pdf(Vec3f reference, const SurfacePoint& point, std::uint32_t primitive, Vec3f wi, float distance) const override;
   float area() const override { return area_; }
   Bounds bounds() const override;
+  std::optional<Vec3f> plane_normal() const override { return normal_; }
 
   // The four corners, counter-clockwise seen against cross(edge_u, edge_v).
   Vec3f corner(int i) const;

@@ -55,6 +55,8 @@ class Shape {
 
   virtual float area() const = 0;  // m^2
   virtual Bounds bounds() const = 0;
+  // Of a flat shape, the normal (unit, front side). Empty: it has many.
+  virtual std::optional<Vec3f> plane_normal() const { return std::nullopt; }
 };
 
 // Whether a flat light is sampled by solid angle: only when it looks large. Below this ratio of area to squared distance the solid

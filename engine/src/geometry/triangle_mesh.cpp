@@ -88,36 +88,63 @@ Vec2f TriangleMesh::uv(const SurfacePoint&, const Hit& hit) const {
 
 std::optional<ShapeSample> TriangleMesh::sample(Vec3f reference, Vec2f u) const {
   const DiscreteDistribution::Choice choice = by_area_.sample(u.x);
-  const auto triangle = static_cast<std::uint32_t>(choice.index);
+  return sample_shared(static_cast<std::uint32_t>(choice.index), {choice.probability, 1 / area_}, reference, {choice.u, u.y});
+}
+
+std::optional<ShapeSample> TriangleMesh::sample_triangle(std::uint32_t triangle, Vec3f reference, Vec2f u) const {
+  return sample_shared(triangle, {1, 1 / triangle_area(triangle)}, reference, u);
+}
+
+std::optional<ShapeSample> TriangleMesh::sample_shared(std::uint32_t triangle, Share share, Vec3f reference, Vec2f u) const {
   const auto [a, b, c] = corners(triangle);
   const Vec3f cross_product = cross(b - a, c - a);
   const float twice_area = length(cross_product);
   const Vec3f normal = cross_product * (side_ / twice_area);
   if (looks_large(0.5f * twice_area, (a + b + c) / 3, normal, reference)) {
     const SphericalTriangle seen(a, b, c, reference);
-    const Vec3f wi = seen.sample({choice.u, u.y});
+    const Vec3f wi = seen.sample(u);
     const float distance = dot(a - reference, normal) / dot(wi, normal);
     if (!(distance > 0)) return std::nullopt;
-    return ShapeSample{reference + distance * wi, normal, wi, distance, choice.probability / seen.solid_angle(), triangle};
+    return ShapeSample{reference + distance * wi, normal, wi, distance, share.probability / seen.solid_angle(), triangle};
   }
-  const float root = std::sqrt(choice.u);
+  const float root = std::sqrt(u.x);
   const Vec3f position = a + root * (1 - u.y) * (b - a) + root * u.y * (c - a);
   const Vec3f d = position - reference;
   const float distance = length(d);
   if (!(distance > 0)) return std::nullopt;
   const Vec3f wi = d / distance;
-  const float pdf_solid_angle = to_solid_angle(1 / area_, distance, dot(normal, wi));
+  const float pdf_solid_angle = to_solid_angle(share.pdf_area, distance, dot(normal, wi));
   if (!(pdf_solid_angle > 0)) return std::nullopt;
   return ShapeSample{position, normal, wi, distance, pdf_solid_angle, triangle};
 }
 
 float TriangleMesh::pdf(Vec3f reference, const SurfacePoint& point, std::uint32_t primitive, Vec3f wi, float distance) const {
-  const auto [a, b, c] = corners(primitive);
+  return shared_pdf(primitive, {by_area_.probability(primitive), 1 / area_}, reference, point, wi, distance);
+}
+
+float TriangleMesh::triangle_pdf(std::uint32_t triangle, Vec3f reference, const SurfacePoint& point, Vec3f wi,
+                                 float distance) const {
+  return shared_pdf(triangle, {1, 1 / triangle_area(triangle)}, reference, point, wi, distance);
+}
+
+float TriangleMesh::shared_pdf(std::uint32_t triangle, Share share, Vec3f reference, const SurfacePoint& point, Vec3f wi,
+                               float distance) const {
+  const auto [a, b, c] = corners(triangle);
   const float area = 0.5f * length(cross(b - a, c - a));
   if (looks_large(area, (a + b + c) / 3, point.geometric_normal, reference)) {
-    return by_area_.probability(primitive) / SphericalTriangle(a, b, c, reference).solid_angle();
+    return share.probability / SphericalTriangle(a, b, c, reference).solid_angle();
   }
-  return to_solid_angle(1 / area_, distance, dot(point.geometric_normal, wi));
+  return to_solid_angle(share.pdf_area, distance, dot(point.geometric_normal, wi));
+}
+
+float TriangleMesh::triangle_area(std::uint32_t triangle) const {
+  const auto [a, b, c] = corners(triangle);
+  return 0.5f * length(cross(b - a, c - a));
+}
+
+Vec3f TriangleMesh::triangle_normal(std::uint32_t triangle) const {
+  const auto [a, b, c] = corners(triangle);
+  return side_ * normalize(cross(b - a, c - a));
 }
 
 Bounds TriangleMesh::bounds() const {

@@ -32,18 +32,31 @@ class TriangleMesh final : public Shape {
   float area() const override { return area_; }
   Bounds bounds() const override;
 
+  // One triangle as a light of its own: as sample() and pdf() of a mesh of nothing else.
+  std::optional<ShapeSample> sample_triangle(std::uint32_t triangle, Vec3f reference, Vec2f u) const;
+  float triangle_pdf(std::uint32_t triangle, Vec3f reference, const SurfacePoint& point, Vec3f wi, float distance) const;
+
   struct Corners {
     Vec3f a, b, c;
   };
   Corners corners(std::uint32_t triangle) const;
   // Interpolated normal of the vertices on the front side, not normalised; 0 0 0 without any.
   Vec3f vertex_normal(const Hit& hit) const;
+  float triangle_area(std::uint32_t triangle) const;    // m^2
+  Vec3f triangle_normal(std::uint32_t triangle) const;  // unit, front side
 
   const Data& data() const { return data_; }
   std::size_t triangles() const { return data_.indices.size() / 3; }
   bool flipped() const { return side_ < 0; }
 
  private:
+  // How probable a triangle is, and the density of its points, m^-2.
+  struct Share {
+    float probability, pdf_area;
+  };
+  std::optional<ShapeSample> sample_shared(std::uint32_t triangle, Share share, Vec3f reference, Vec2f u) const;
+  float shared_pdf(std::uint32_t triangle, Share share, Vec3f reference, const SurfacePoint& point, Vec3f wi, float distance) const;
+
   Data data_;
   float side_;  // -1 when flipped
   float area_ = 0;

@@ -24,7 +24,13 @@ class OiioFile final : public ImageFile {
     OIIO::ImageSpec settings, spec;
     settings.attribute("oiio:UnassociatedAlpha", 1);  // colours as they are stored
     if (!input_->open(path, spec, settings)) fail();
-    header_ = {spec.width, spec.height, spec.depth, spec.channelnames, sample_of(spec.format), spec.deep};
+    header_ = {spec.width,
+               spec.height,
+               spec.depth,
+               spec.channelnames,
+               sample_of(spec.format),
+               spec.deep,
+               spec.get_int_attribute("Orientation", 1) != 1};
   }
 
   const ImageHeader& header() const override { return header_; }

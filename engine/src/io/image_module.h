@@ -16,6 +16,7 @@ struct ImageHeader {
   std::vector<std::string> channels;  // names in the order of the file
   ImageSample sample = ImageSample::kFloat;
   bool deep = false;
+  bool turned = false;  // rows do not run from the top, or not from the left
 };
 
 // An open image. Throws std::runtime_error with the decoder's own words.

@@ -1,50 +1,17 @@
 #include "io/read_image.h"
 
-#include <dlfcn.h>
-
 #include <algorithm>
-#include <array>
-#include <fstream>
 #include <memory>
 #include <optional>
-#include <string_view>
 
-#include "io/image_module.h"
 #include "io/jpeg_size.h"
 #include "io/limits.h"
+#include "io/open_image.h"
 #include "io/text.h"
 #include "support/error.h"
 
 namespace fluxfarm {
 namespace {
-
-OpenImageFunction load_module() {
-  const std::filesystem::path module = std::filesystem::canonical("/proc/self/exe").parent_path() / kImageModule;
-  void* library = dlopen(module.c_str(), RTLD_NOW | RTLD_LOCAL);
-  if (library == nullptr) throw ResourceError(std::string("images cannot be read: ") + dlerror());
-  void* function = dlsym(library, kOpenImageFunction);
-  if (function == nullptr) throw ResourceError(module.string() + " is not the engine's own module for images");
-  return reinterpret_cast<OpenImageFunction>(function);
-}
-
-// Loaded once, for the first image, and kept.
-OpenImageFunction open_image_function() {
-  static const OpenImageFunction function = load_module();
-  return function;
-}
-
-// Name of the decoder, or nothing.
-std::optional<std::string> format_of(const std::filesystem::path& file) {
-  using namespace std::string_view_literals;
-  std::array<char, 8> bytes{};
-  std::ifstream(file, std::ios::binary).read(bytes.data(), bytes.size());
-  const std::string_view start(bytes.data(), bytes.size());
-  if (start.starts_with("\x76\x2f\x31\x01"sv)) return "openexr";
-  if (start.starts_with("\x89PNG\r\n\x1a\n"sv)) return "png";
-  if (start.starts_with("\xff\xd8\xff"sv)) return "jpeg";
-  if (start.starts_with("#?"sv)) return "hdr";
-  return std::nullopt;
-}
 
 void check_size(std::int64_t width, std::int64_t height, const std::string& name) {
   if (width >= 1 && height >= 1 && width <= kMaxImageSide && height <= kMaxImageSide && width * height <= kMaxImagePixels) return;
@@ -104,16 +71,15 @@ TextureImage read(ImageFile& file, const std::string& name, bool raw) {
 }  // namespace
 
 TextureImage read_image(const std::filesystem::path& file, const std::string& name, bool raw) {
-  const std::optional<std::string> format = format_of(file);
+  const std::optional<std::string> format = image_format_of(file);
   if (!format) throw SceneError(name, "is no image that can be read, expected EXR, HDR, PNG or JPEG");
   // Its decoder takes memory for the whole image before it tells the size.
   if (*format == "jpeg") {
     const auto [width, height] = jpeg_size(file);
     check_size(width, height, name);
   }
-  const OpenImageFunction open = open_image_function();
   try {
-    const std::unique_ptr<ImageFile> image(open(file.c_str(), format->c_str()));
+    const std::unique_ptr<ImageFile> image = open_image(file, *format);
     return read(*image, name, raw);
   } catch (const Error&) {
     throw;

@@ -64,7 +64,8 @@ Scene::Scene(const SceneDescription& description, int threads)
     surface.front = sides.front != nullptr ? sides.front : bsdf;
     surface.back = sides.back != nullptr ? sides.back : bsdf;
     surface.two_sided = sides.front != nullptr;
-    if (shape.interior_medium != kNoMedium && !bsdf->transmits()) {
+    surface.transmits = bsdf->transmits();
+    if (shape.interior_medium != kNoMedium && !surface.transmits) {
       warnings_.push_back(shape.name +
                           ": the medium inside lies behind an opaque material, so no light reaches it; null, dielectric " +
                           "and roughdielectric let light in");
@@ -128,13 +129,13 @@ Scene::Scene(const SceneDescription& description, int threads)
   for (const auto& emitter : area_emitters_) emitters.push_back(emitter.get());
   for (const auto& emitter : free_emitters_) emitters.push_back(emitter.get());
   emitter_choice_ = EmitterChoice(emitters);
-  std::size_t index = 0;
+  std::uint32_t index = 0;
   for (Surface& surface : surfaces_) {
-    if (surface.emitter != nullptr) surface.choice_probability = emitter_choice_.probability(index++);
+    if (surface.emitter != nullptr) surface.emitter_index = index++;
   }
   for (const auto& emitter : free_emitters_) {
     const auto* map = dynamic_cast<const EnvmapEmitter*>(emitter.get());
-    if (map != nullptr) environment_map_ = {map, emitter_choice_.probability(index)};
+    if (map != nullptr) environment_map_ = {map, emitter_choice_.distant_probability(index)};
     ++index;
   }
   census_.shapes = surfaces_.size();

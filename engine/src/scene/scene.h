@@ -49,8 +49,9 @@ class Scene {
     const Bsdf* front = nullptr;
     const Bsdf* back = nullptr;
     const AreaEmitter* emitter = nullptr;  // nullptr: does not emit
-    float choice_probability = 0;          // of its emitter in next-event estimation
+    std::uint32_t emitter_index = 0;       // of it in emitters()
     bool two_sided = false;
+    bool transmits = false;    // light can pass to the other side
     bool anisotropic = false;  // or has a normal map: the frame follows the texture coordinates
     bool textured = false;     // on one side at least: ask textured_material()
     // What a textured material needs to know of a place besides uv.
@@ -90,7 +91,7 @@ class Scene {
   const std::optional<Rgb>& environment() const { return environment_; }
   struct EnvironmentMap {
     const EnvmapEmitter* emitter = nullptr;  // nullptr: none
-    float choice_probability = 0;            // in next-event estimation
+    float choice_probability = 0;            // in next-event estimation, the same everywhere
   };
   const EnvironmentMap& environment_map() const { return environment_map_; }
   const Camera& camera() const { return camera_; }

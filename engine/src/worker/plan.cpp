@@ -41,6 +41,7 @@ std::string plan_json(const Scene& scene) {
        {part("lens", scene.camera().has_lens(), scene.camera().has_lens() ? "a sensor with an aperture" : "a pinhole"),
         part("next-event estimation", emitters > 0, count(emitters, "emitter") + " that can be sampled"),
         part("emitter choice", emitters > 1, count(emitters, "emitter") + " to choose from"),
+        part("emitter tree", scene.emitters().by_place(), count(scene.emitters().candidates(), "emitter or triangle")),
         part("environment", census.environment, census.environment ? "a constant environment" : "no environment"),
         part("environment map", census.environment_map, census.environment_map ? "an envmap" : "no envmap"),
         part("tangent frames", census.anisotropic_materials || census.normal_maps,

@@ -87,10 +87,44 @@ TEST_F(EnvmapFile, MissingIsAnError) {
 }
 
 TEST_F(EnvmapFile, OfAnotherKindIsAnError) {
-  folder.write("maps/sky.exr", "#?RADIANCE\n");
-  EXPECT_EQ(error(), "maps/sky.exr: is no OpenEXR image, expected one for an envmap");
+  folder.write("maps/sky.exr", "\x89PNG\r\n\x1a\n");
+  EXPECT_EQ(error(), "maps/sky.exr: is no image for an envmap, expected OpenEXR or HDR");
   folder.write("maps/sky.exr", "");
-  EXPECT_EQ(error(), "maps/sky.exr: is no OpenEXR image, expected one for an envmap");
+  EXPECT_EQ(error(), "maps/sky.exr: is no image for an envmap, expected OpenEXR or HDR");
+}
+
+// Radiance's format: mantissas of red, green and blue and a common exponent, 128 + log2 of what 256 of a mantissa stand for.
+std::string hdr(const std::string& size, int pixels) {
+  std::string text = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n" + size + "\n";
+  for (int i = 0; i < pixels; ++i) text += {static_cast<char>(64), static_cast<char>(32), static_cast<char>(16 + i), '\x8a'};
+  return text;
+}
+
+TEST_F(EnvmapFile, OfRadiancesFormatGivesItsColours) {
+  folder.write("maps/sky.exr", hdr("-Y 3 +X 2", 6));
+  const LatLongImage image = read().image;
+  EXPECT_EQ(image.width, 2);
+  EXPECT_EQ(image.height, 3);
+  ASSERT_EQ(image.pixels.size(), 6u);
+  // The exponent 138 makes a mantissa m stand for 4 m; decoders differ by half a mantissa.
+  EXPECT_NEAR(image.pixels[3].r, 256, 2);
+  EXPECT_NEAR(image.pixels[3].g, 128, 2);
+  EXPECT_NEAR(image.pixels[3].b, 76, 2);
+  EXPECT_GT(image.pixels[3].r, 255) << "no clamping to what a screen can show";
+}
+
+TEST_F(EnvmapFile, OfRadiancesFormatThatIsWrongIsAnError) {
+  folder.write("maps/sky.exr", "#?RADIANCE\n");
+  EXPECT_EQ(error().find("maps/sky.exr: is a damaged hdr image: "), 0u) << error();
+  folder.write("maps/sky.exr", hdr("-Y 3 +X 2", 3));
+  EXPECT_EQ(error().find("maps/sky.exr: is a damaged hdr image: "), 0u) << error();
+  EXPECT_EQ(error().find(folder.path().string()), std::string::npos) << error();
+  folder.write("maps/sky.exr", hdr("-Y 2 +X 3", 6));
+  EXPECT_EQ(error(), "maps/sky.exr: has 3 x 2 pixels, expected at least 2 x 3 for an envmap");
+  folder.write("maps/sky.exr", hdr("+Y 3 +X 2", 6));
+  EXPECT_NE(error(), "") << "rows from the bottom";
+  folder.write("maps/sky.exr", hdr("-Y 60000 +X 60000", 6));
+  EXPECT_EQ(error().find("maps/sky.exr: the image has 60000 x 60000 pixels, expected "), 0u) << error();
 }
 
 TEST_F(EnvmapFile, DeepIsAnError) {

@@ -63,6 +63,7 @@ class PathGroup {
         if (alive != i) {
           path_[alive] = path_[i];
           rays_[alive] = rays_[i];
+          if (scene_.emitters().by_place()) references_[alive] = references_[i];
           sampler_.move(i, alive);
         }
         ++alive;
@@ -104,7 +105,7 @@ class PathGroup {
     }
     const PathVertex& vertex = vertices_[i];
     if (depth == 0) note_first_hit(vertex, *path.result);
-    if (vertex.surface->emitter != nullptr && shows_emitters) add_emission(path, vertex, ray, hit);
+    if (vertex.surface->emitter != nullptr && shows_emitters) add_emission(i, vertex);
     if (depth + 1 >= max_depth_) return false;
     if (vertex.surface->has_continuous_lobe && !scene_.emitters().empty()) sample_light(i, depth, vertex);
 
@@ -119,6 +120,7 @@ class PathGroup {
     if (depth + 1 >= method_.rr_depth && !survives(i, depth)) return false;
     const Vec3f direction = vertex.frame.to_world(scatter->wi);
     ray = {vertex.origin_towards(direction), direction};
+    if (scene_.emitters().by_place()) references_[i] = vertex.emitter_reference();
     return true;
   }
 
@@ -130,13 +132,15 @@ class PathGroup {
   }
 
   // Emission found by BSDF sampling, weighted against next-event estimation, which could have found it, too.
-  static void add_emission(Path& path, const PathVertex& vertex, const Ray& ray, const Hit& hit) {
+  void add_emission(std::size_t i, const PathVertex& vertex) {
+    const Path& path = path_[i];
+    const Ray& ray = rays_[i];
     const Rgb emitted = vertex.surface->emitter->radiance(vertex.point, ray.direction);
     if (emitted.is_black()) return;
     float weight = 1;
     if (!path.delta) {
-      const float pdf = vertex.surface->shape->pdf(ray.origin, vertex.point, hit.primitive, ray.direction, hit.t);
-      weight = power_heuristic(path.bsdf_pdf, pdf * vertex.surface->choice_probability);
+      const float pdf = scene_.emitters().pdf(vertex.surface->emitter_index, references_[i], {vertex.point, hits_[i], ray});
+      weight = power_heuristic(path.bsdf_pdf, pdf);
     }
     path.result->radiance += path.throughput * emitted * weight;
   }
@@ -155,8 +159,9 @@ class PathGroup {
   void sample_light(std::size_t i, int depth, const PathVertex& vertex) {
     const EmitterChoice& emitters = scene_.emitters();
     const float u_choice = emitters.single() ? 0.0f : sampler_.draw_1d(dimension_of(depth, kEmitterChoice), i);
-    const EmitterChoice::Choice choice = emitters.sample(u_choice);
-    const std::optional<EmitterSample> light = choice.emitter->sample(vertex.point.position, u_emitter_[i]);
+    const std::optional<EmitterChoice::Choice> choice = emitters.sample(vertex.emitter_reference(), u_choice);
+    if (!choice) return;
+    const std::optional<EmitterSample> light = choice->emitter->sample(vertex.point.position, u_emitter_[i]);
     if (!light) return;
     const Vec3f wi = vertex.frame.to_local(light->wi);
     const BsdfValue scatter = vertex.bsdf->value(vertex.wo, wi);
@@ -165,8 +170,8 @@ class PathGroup {
     const std::optional<Ray> shadow = shadow_ray(vertex.origin_towards(light->wi), *light);
     if (!shadow) return;
     shadow_rays_[lights_] = *shadow;
-    const float weight = light->delta ? 1.0f : power_heuristic(light->pdf_solid_angle * choice.probability, scatter.pdf);
-    const Rgb arriving = scatter.f * light->weight * (std::fabs(wi.z) * weight / choice.probability);
+    const float weight = light->delta ? 1.0f : power_heuristic(light->pdf_solid_angle * choice->probability, scatter.pdf);
+    const Rgb arriving = scatter.f * light->weight * (std::fabs(wi.z) * weight / choice->probability);
     pending_[lights_++] = {path_[i].throughput * arriving, path_[i].result};
   }
 
@@ -196,6 +201,7 @@ class PathGroup {
   std::array<Vec2f, kMaxPaths> u_direction_, u_emitter_;
   std::array<Path, kMaxPaths> path_;
   std::array<Ray, kMaxPaths> rays_;
+  std::array<EmitterReference, kMaxPaths> references_;  // where each ray comes from, if the choice of emitters asks for it
   std::array<Hit, kMaxPaths> hits_;
   std::array<PathVertex, kMaxPaths> vertices_;
   std::array<BsdfSpace, kMaxPaths> bsdf_spaces_;  // of vertices with textures

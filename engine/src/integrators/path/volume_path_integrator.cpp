@@ -38,6 +38,7 @@ struct VolumePath {
   bool delta = true;          // next-event estimation could not have found the last direction
   float direction_pdf = 0;    // of that direction, sr^-1; unused while `delta`
   Vec3f bounce_origin;        // where next-event estimation stood
+  EmitterReference reference;  // what it knew of that place
   float bounce_distance = 0;  // from there to the ray's origin through null boundaries, m
   SampleResult* result = nullptr;
 };
@@ -149,11 +150,13 @@ class VolumePathGroup {
     if (path.throughput.is_black() || path.depth + 1 >= max_depth_) return false;
     const Vec3f position = ray.origin + ray.t_max * ray.direction;
     const PhaseFunction& phase = path.medium->phase();
-    if (const std::optional<LightChoice> light = choose_light(i, step, position)) {
+    const EmitterReference reference{position, {0, 0, 0}};
+    if (const std::optional<LightChoice> light = choose_light(i, step, reference)) {
       const float scattered = phase.value(ray.direction, light->sample.wi);
       add_light(i, *light, position, path.medium, Rgb{scattered}, scattered);
     }
     const Vec3f direction = phase.sample(ray.direction, u_direction_[i]);
+    path.reference = reference;
     return bounce(i, step, {position, direction}, phase.value(ray.direction, direction), false, kMaxSurvivalInMedium);
   }
 
@@ -162,7 +165,7 @@ class VolumePathGroup {
     if (path.depth == 0) note_first_hit(vertex, *path.result);
     if (path.depth + 1 >= max_depth_) return false;
     if (vertex.surface->has_continuous_lobe) {
-      if (const std::optional<LightChoice> light = choose_light(i, step, vertex.point.position)) {
+      if (const std::optional<LightChoice> light = choose_light(i, step, vertex.emitter_reference())) {
         const Vec3f wi = vertex.frame.to_local(light->sample.wi);
         const BsdfValue scatter = vertex.bsdf->value(vertex.wo, wi);
         add_light(i, *light, vertex.origin_towards(light->sample.wi), boundary.towards(light->sample.wi, vertex.point, path.medium),
@@ -177,6 +180,7 @@ class VolumePathGroup {
     if (path.throughput.is_black()) return false;
     const Vec3f direction = vertex.frame.to_world(scatter->wi);
     path.medium = boundary.towards(direction, vertex.point, path.medium);
+    path.reference = vertex.emitter_reference();
     return bounce(i, step, {vertex.origin_towards(direction), direction}, scatter->pdf, scatter->delta, kMaxSurvivalAtSurface);
   }
 
@@ -206,14 +210,17 @@ class VolumePathGroup {
 
   // Emission found by the last bounce, weighted against next-event estimation from there, which could have found it, too. The
   // weights leave out the chance of getting there without a collision, for both alike.
-  static void add_emission(const VolumePath& path, const PathVertex& vertex, const Ray& ray, const Hit& hit) {
+  void add_emission(const VolumePath& path, const PathVertex& vertex, const Ray& ray, const Hit& hit) const {
     const Rgb emitted = vertex.surface->emitter->radiance(vertex.point, ray.direction);
     if (emitted.is_black()) return;
     float weight = 1;
     if (!path.delta) {
+      const Ray from_bounce{path.bounce_origin, ray.direction};
+      Hit seen = hit;
+      seen.t += path.bounce_distance;
       const float pdf =
-          vertex.surface->shape->pdf(path.bounce_origin, vertex.point, hit.primitive, ray.direction, path.bounce_distance + hit.t);
-      weight = power_heuristic(path.direction_pdf, pdf * vertex.surface->choice_probability);
+          scene_.emitters().pdf(vertex.surface->emitter_index, path.reference, {vertex.point, seen, from_bounce});
+      weight = power_heuristic(path.direction_pdf, pdf);
     }
     path.result->radiance += path.throughput * emitted * weight;
   }
@@ -232,14 +239,15 @@ class VolumePathGroup {
     EmitterSample sample;
     float probability;  // of the emitter
   };
-  std::optional<LightChoice> choose_light(std::size_t i, int step, Vec3f from) const {
+  std::optional<LightChoice> choose_light(std::size_t i, int step, const EmitterReference& reference) const {
     const EmitterChoice& emitters = scene_.emitters();
     if (emitters.empty()) return std::nullopt;
     const float u_choice = emitters.single() ? 0.0f : sampler_.draw_1d(dimension_of(step, kEmitterChoice), i);
-    const EmitterChoice::Choice choice = emitters.sample(u_choice);
-    const std::optional<EmitterSample> sample = choice.emitter->sample(from, u_emitter_[i]);
+    const std::optional<EmitterChoice::Choice> choice = emitters.sample(reference, u_choice);
+    if (!choice) return std::nullopt;
+    const std::optional<EmitterSample> sample = choice->emitter->sample(reference.position, u_emitter_[i]);
     if (!sample) return std::nullopt;
-    return LightChoice{*sample, choice.probability};
+    return LightChoice{*sample, choice->probability};
   }
 
   // `scattered`: phase function, or BSDF times cosine, towards the light, sr^-1; `pdf`: of sampling it there, sr^-1.
