@@ -30,9 +30,9 @@ class Farm:
         assert self.service.client is not None
         return self.service.client
 
-    def submit(self) -> str:
+    def submit(self, scene: Path = SCENE, goal: dict[str, float] | None = None) -> str:
         size = {"width": SIDE, "height": SIDE}
-        return self.client.submit(SCENE.read_text(), size=size, goal={"spp": SPP}, seed=SEED)
+        return self.client.submit(scene.read_text(), size=size, goal=goal or {"spp": SPP}, seed=SEED)
 
     def tiles_done(self, job_id: str) -> int:
         return int(self.client.job(job_id)["progress"]["tiles_done"])

@@ -1,7 +1,7 @@
 """An error goal is kept: the true error of the finished picture is at or below it in at least 95 % of the jobs.
 
 The true error is the square root of relMSE against a long reference, whose own error is about a tenth of the goal. The
-engine stops on an upper bound (engine/src/film/error_bound.h) at which it looks when the samples have doubled, so a
+engine stops on an upper bound (engine/src/film/error_goal.h) at which it looks after rounds that double samples, so a
 good picture has more than half of the error that was asked for, unless the first look was enough.
 """
 

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from conftest import ENGINE, Layers, read_exr, render_alone, same_bits
+from conftest import ENGINE, ROOT, Layers, read_exr, render_alone, same_bits
 from farm import SCENE, SEED, SIDE, SPP, Farm
 
 
@@ -54,6 +54,20 @@ def test_service_killed_and_started_again_gives_the_same_bits(farms: list[Farm],
         farm.service.end(signal.SIGKILL)
         farm.start()
         assert farm.tiles_done(job_id) >= tiles, "a tile that was reported done is lost"
+    assert same_bits(alone, farm.layers(job_id))
+
+
+def test_error_goal_gives_the_same_bits_whoever_renders_it(farms: list[Farm], tmp_path: Path) -> None:
+    scene, goal = ROOT / "scenes" / "cornell" / "scene.xml", 0.1
+    options = ("--size", f"{SIDE}x{SIDE}", "--rel-error", goal, "--seed", SEED, "--tile", 16)
+    alone = render_alone(scene, tmp_path / "alone.exr", *options)
+    assert len(np.unique(alone["samples"])) > 1, "all tiles took the same samples: nothing was decided"
+    farms.append(farm := Farm(tmp_path, workers=2))
+    job_id = farm.submit(scene, {"rel_error": goal})
+    for tiles in (20, 50):
+        farm.wait_for_tiles(job_id, tiles)
+        farm.service.end(signal.SIGKILL)
+        farm.start()
     assert same_bits(alone, farm.layers(job_id))
 
 

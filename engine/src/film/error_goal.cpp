@@ -71,7 +71,7 @@ class ErrorShares {
   double likely_value(int x, int y, int channel) const {
     const PixelEstimate& pixel = estimate(x, y);
     const PixelRect near = clipped(PixelRect{x - 1, y - 1, 3, 3});
-    std::array<double, 9> means;
+    std::array<double, 9> means{};
     std::size_t count = 0;
     for (int v = near.y; v < near.y + near.height; ++v) {
       for (int u = near.x; u < near.x + near.width; ++u) means[count++] = estimate(u, v).mean[channel];
