@@ -23,6 +23,11 @@ constexpr double kFewCarriers = 64;
 // So many standard errors make a pixel differ clearly (a choice: with two, chance biases the error of an even picture).
 constexpr double kDistinct = 3;
 
+// So many standard errors are taken off a pixel at the edge of a bright one: few samples may have hit what is bright. Measured on
+// veach-mis, 128x72 at 10 %: with 0 only 3 of 10 pictures keep the goal, with 0.7 14 of 16, with 0.8 all of 24, of which 16 have more
+// than half of the error that was asked for, with 1 only 4 of 10.
+constexpr double kDoubt = 0.8;
+
 struct TileError {
   double pixels = 0;
   std::uint32_t samples = 0;  // of each pixel
@@ -85,7 +90,7 @@ class ErrorShares {
         // One bright sample does not move the median of the replicates.
         const PixelEstimate& other = estimate(u, v);
         if (differ(other.variance[channel], other.median[channel], around)) {
-          value = std::max(value, std::min(mean, other.median[channel]));
+          value = std::max(value, std::min(mean - kDoubt * std::sqrt(pixel.variance[channel]), other.median[channel]));
         }
       }
     }
