@@ -10,11 +10,11 @@
 #include <nlohmann/json.hpp>
 
 #include "commands.h"
+#include "film/tile_grid.h"
 #include "integrators/integrator.h"
 #include "scene_options.h"
 #include "support/error.h"
 #include "support/parallel.h"
-#include "film/tile_grid.h"
 #include "worker/tile_runner.h"
 
 namespace fluxfarm {

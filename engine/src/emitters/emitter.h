@@ -45,7 +45,8 @@ inline std::optional<EmitterSample> emitted_from(const std::optional<ShapeSample
   if (!s) return std::nullopt;
   const bool back = dot(s->normal, s->wi) >= 0;
   if (back && !both_sides) return std::nullopt;
-  return EmitterSample{s->position, back ? -s->normal : s->normal, s->wi, s->distance, radiance / s->pdf_solid_angle, s->pdf_solid_angle, false};
+  return EmitterSample{
+      s->position, back ? -s->normal : s->normal, s->wi, s->distance, radiance / s->pdf_solid_angle, s->pdf_solid_angle, false};
 }
 
 class AreaEmitter final : public Emitter {

@@ -24,8 +24,8 @@ constexpr double kFewCarriers = 64;
 constexpr double kDistinct = 3;
 
 // So many standard errors are taken off a pixel at the edge of a bright one: few samples may have hit what is bright. Measured on
-// veach-mis, 128x72 at 10 %: with 0 only 3 of 10 pictures keep the goal, with 0.7 14 of 16, with 0.8 all of 24, of which 16 have more
-// than half of the error that was asked for, with 1 only 4 of 10.
+// veach-mis, 128x72 at 10 %: with 0 only 3 of 10 pictures keep the goal, with 0.7 14 of 16, with 0.8 all of 24, of which 16 have
+// more than half of the error that was asked for, with 1 only 4 of 10.
 constexpr double kDoubt = 0.8;
 
 struct TileError {
@@ -179,7 +179,8 @@ double predict_samples(std::vector<TileError> tiles, const ErrorGoal& goal, doub
     pixels += tile.pixels;
   }
   const auto reached = [&] {
-    const double sum = std::accumulate(tiles.begin(), tiles.end(), 0.0, [](double s, const TileError& t) { return s + t.own * t.pixels; });
+    const double sum =
+        std::accumulate(tiles.begin(), tiles.end(), 0.0, [](double s, const TileError& t) { return s + t.own * t.pixels; });
     return margin * sum / pixels <= goal.rel_error * goal.rel_error;
   };
   while (!reached()) {

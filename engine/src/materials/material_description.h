@@ -152,9 +152,10 @@ struct BumpMapDescription {
   float scale = 1;
 };
 
-using MaterialDescription = std::variant<DiffuseDescription, DielectricDescription, ConductorDescription, RoughConductorDescription,
-                                         RoughDielectricDescription, PlasticDescription, RoughPlasticDescription,
-                                         PrincipledDescription, GltfDescription, TwosidedDescription, ThinDielectricDescription, NullDescription,
-                                         MaskDescription, BlendDescription, NormalMapDescription, BumpMapDescription>;
+using MaterialDescription =
+    std::variant<DiffuseDescription, DielectricDescription, ConductorDescription, RoughConductorDescription,
+                 RoughDielectricDescription, PlasticDescription, RoughPlasticDescription, PrincipledDescription, GltfDescription,
+                 TwosidedDescription, ThinDielectricDescription, NullDescription, MaskDescription, BlendDescription,
+                 NormalMapDescription, BumpMapDescription>;
 
 }  // namespace fluxfarm

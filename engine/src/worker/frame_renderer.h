@@ -29,9 +29,9 @@ struct FrameSettings {
 
 // State after a pass.
 struct TimelinePoint {
-  double seconds = 0;  // since the first pass began
-  double spp = 0;              // mean over the pixels
-  std::optional<double> error;  // FilmSummary::error_noise
+  double seconds = 0;                 // since the first pass began
+  double spp = 0;                     // mean over the pixels
+  std::optional<double> error;        // FilmSummary::error_noise
   std::optional<double> error_bound;  // ErrorLook::bound, after a round towards an error goal
 };
 

@@ -66,9 +66,8 @@ TEST_F(OutsideScenes, VeachAjarLoadsItsTextures) {
 TEST_F(OutsideScenes, GlassOfMilk) {
   const SceneDescription scene = read("glass-of-milk");
   EXPECT_EQ(scene.media.size(), 1u);
-  EXPECT_TRUE(std::ranges::any_of(scene.materials, [](const MaterialDescription& material) {
-    return std::holds_alternative<BlendDescription>(material);
-  }));
+  EXPECT_TRUE(std::ranges::any_of(
+      scene.materials, [](const MaterialDescription& material) { return std::holds_alternative<BlendDescription>(material); }));
 }
 
 }  // namespace

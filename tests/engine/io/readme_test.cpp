@@ -29,8 +29,9 @@ TEST(Readme, NamesEveryPluginAndParameter) {
   const std::string readme = text_of(room / "README.md");
   std::set<std::string> names = matches(text_of(room / "plugin_tree.cpp"), "\\{\"(\\w+)\", PluginKind::k(?!Unsupported|Reference)");
   EXPECT_GT(names.size(), 30u);
-  for (const char* file : {"read_film.cpp", "read_sensor.cpp", "read_material.cpp", "read_principled.cpp",
-                           "read_nested_material.cpp", "read_texture.cpp", "read_emitter.cpp", "read_shape.cpp", "read_medium.cpp"}) {
+  for (const char* file :
+       {"read_film.cpp", "read_sensor.cpp", "read_material.cpp", "read_principled.cpp", "read_nested_material.cpp",
+        "read_texture.cpp", "read_emitter.cpp", "read_shape.cpp", "read_medium.cpp"}) {
     const std::string code = text_of(room / file);
     names.merge(matches(code, "properties\\.(?:boolean|integer|number|text|triple|transform|rgb|emission|has)\\(\"(\\w+)\""));
     names.merge(matches(code, "\"([a-z]+_[a-z_]+)\""));

@@ -6,12 +6,12 @@
 
 #include <algorithm>
 
+#include "film/tile_grid.h"
 #include "support/error.h"
 #include "support/scene_builder.h"
 #include "support/sky.h"
 #include "worker/codec.h"
 #include "worker/frame_socket.h"
-#include "film/tile_grid.h"
 #include "worker/tile_runner.h"
 
 namespace fluxfarm::testing {

@@ -31,10 +31,9 @@ struct PathVertex {
       look_up(scene, hit, back, side, space);
   }
 
-  // What the choice of an emitter may know: the material takes light along the shading normal, on the side of wo unless it transmits.
-  EmitterReference emitter_reference() const {
-    return {point.position, wo.z < 0 ? -frame.n : frame.n, surface->transmits};
-  }
+  // What the choice of an emitter may know: the material takes light along the shading normal, on the side of wo unless it
+  // transmits.
+  EmitterReference emitter_reference() const { return {point.position, wo.z < 0 ? -frame.n : frame.n, surface->transmits}; }
 
   // Where a ray towards `direction` (world) may start without meeting its own surface.
   Vec3f origin_towards(Vec3f direction) const {

@@ -7,7 +7,16 @@ be rebuilt from the ledger.
 from collections import deque
 from dataclasses import dataclass, field
 
-from fluxfarm.domain.goal import UNBOUNDED_SPP, Measured, Stop, ceiling_spp, first_round, has_barriers, next_pass, settled
+from fluxfarm.domain.goal import (
+    UNBOUNDED_SPP,
+    Measured,
+    Stop,
+    ceiling_spp,
+    first_round,
+    has_barriers,
+    next_pass,
+    settled,
+)
 from fluxfarm.domain.job import JobState
 from fluxfarm.domain.leases import Decision, RenderLease, SceneRef
 from fluxfarm.domain.records import JobRecord, OpenedPass, Revision, SceneFacts, Unmerged
