@@ -1,8 +1,9 @@
 """When a job has enough samples: by count, by time or by error.
 
-A sample goal fixes all passes in advance. A time goal decides before each pass, from the clock. An error goal is decided
-by the engine after each round of passes, from the merged sums alone, so that the same job always stops at the same
-samples: the engine bounds the error, with a confidence that it spends over the rounds, and names the tiles that need more.
+A sample goal fixes all passes in advance. A time goal decides before each pass, from the clock. An error goal is
+decided by the engine after each round of passes, from the merged sums alone, so that the same job always stops at the
+same samples: the engine bounds the error, with a confidence that it spends over the rounds, and names the tiles that
+need more.
 """
 
 from dataclasses import dataclass
@@ -41,8 +42,9 @@ class Limits:
 class Measured:
     """What is known when a pass may begin.
 
-    `round` is None once an error goal needs no further one. `spp` are the samples taken of each of its pixels, `sample_s`
-    the seconds that one more of each will take by the rate so far (0: unknown). `error_bound` is there at a decision."""
+    `round` is None once an error goal needs no further one. `spp` are the samples taken of each of its pixels,
+    `sample_s` the seconds that one more of each will take by the rate so far (0: unknown). `error_bound` is there at a
+    decision."""
 
     round: Round | None
     spp: int
@@ -108,8 +110,8 @@ def _unreached(goal: Goal, measured: Measured) -> str | None:
             return None
         error = "unknown" if measured.error_noise is None else f"{measured.error_noise:.4g}"
         return (
-            f"goal not reached with 95 % confidence: relative error is about {error} after up to {measured.spp} samples per "
-            f"pixel and {measured.running_s:.1f} s, expected at most {goal.rel_error:g}; raise the limits"
+            f"goal not reached with 95 % confidence: relative error is about {error} after up to {measured.spp} samples "
+            f"per pixel and {measured.running_s:.1f} s, expected at most {goal.rel_error:g}; raise the limits"
         )
     if goal.spp is not None and measured.spp < goal.spp:
         return (

@@ -44,8 +44,9 @@ class SceneFacts:
 class Revision:
     """A published image. Digests name files of the job; `film` is None where none was written, or a newer one is.
 
-    Where an error goal was decided, `error_bound` is the bound that may end the job, `next_round` what follows (None: no
-    tile may take more samples, or the goal is reached) and `samples_expected` the camera samples of the whole job."""
+    Where an error goal was decided, `error_bound` is the bound that may end the job, `next_round` what follows (None:
+    no tile may take more samples, or the goal is reached) and `samples_expected` the camera samples of the whole job.
+    """
 
     number: int
     passes: int
@@ -109,9 +110,9 @@ class OpenedPass:
 
 @dataclass(frozen=True, slots=True)
 class Unmerged:
-    """What a restart needs of a job: the newest revision that decided an error goal, the samples per pixel that its round
-    has come to (None: it has not begun), passes that no revision contains, the newest film and the tiles that it does not
-    contain, in the order of their passes."""
+    """What a restart needs of a job: the newest revision that decided an error goal, the samples per pixel that its
+    round has come to (None: it has not begun), passes that no revision contains, the newest film and the tiles that it
+    does not contain, in the order of their passes."""
 
     decision: Revision | None
     round_spp: int | None

@@ -93,7 +93,8 @@ MIGRATIONS: tuple[str, ...] = (
     ALTER TABLE revisions ADD COLUMN samples_expected REAL;
     -- Unfinished jobs with an error goal were cut into other tiles: they begin anew.
     CREATE TEMP TABLE renewed AS SELECT id FROM jobs
-        WHERE json_extract(request, '$.goal.rel_error') IS NOT NULL AND state NOT IN ('SUCCEEDED', 'FAILED', 'CANCELLED');
+        WHERE json_extract(request, '$.goal.rel_error') IS NOT NULL
+        AND state NOT IN ('SUCCEEDED', 'FAILED', 'CANCELLED');
     DELETE FROM tiles WHERE job_id IN (SELECT id FROM renewed);
     DELETE FROM passes WHERE job_id IN (SELECT id FROM renewed);
     DELETE FROM revisions WHERE job_id IN (SELECT id FROM renewed);
