@@ -134,11 +134,7 @@ def grant(connection: Connection, fence: int, job_id: str) -> None:
 
 def open_pass(connection: Connection, job_id: str, opened: OpenedPass) -> None:
     """Record a pass; a pass that is there already stays as it is."""
-    connection.execute(
-        insert(passes)
-        .prefix_with("OR IGNORE")
-        .values(rows.pass_to_row(job_id, opened))
-    )
+    connection.execute(insert(passes).prefix_with("OR IGNORE").values(rows.pass_to_row(job_id, opened)))
     connection.execute(
         update(jobs)
         .where(jobs.c.id == job_id, jobs.c.passes_opened <= opened.index)
