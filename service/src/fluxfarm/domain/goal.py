@@ -110,7 +110,7 @@ def _unreached(goal: Goal, measured: Measured) -> str | None:
             return None
         error = "unknown" if measured.error_noise is None else f"{measured.error_noise:.4g}"
         return (
-            f"goal not reached with 95 % confidence: relative error is about {error} after up to {measured.spp} samples "
+            f"goal not reached with 95 % confidence: the error is about {error} after at most {measured.spp} samples "
             f"a pixel and {measured.running_s:.1f} s, expected at most {goal.rel_error:g}; raise the limits"
         )
     if goal.spp is not None and measured.spp < goal.spp:
