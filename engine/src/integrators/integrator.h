@@ -4,11 +4,13 @@
 // without its caller knowing.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <span>
 
 #include "accel/ray_queries.h"
+#include "film/light_layer.h"
 #include "math/rgb.h"
 #include "math/vec.h"
 #include "scene/scene.h"
@@ -23,11 +25,17 @@ struct CameraSample {
 
 // What a camera sample brings back.
 struct SampleResult {
-  Rgb radiance;     // W m^-2 sr^-1
+  Rgb radiance;                          // W m^-2 sr^-1
+  std::array<Rgb, kLightLayers> layers;  // of it, by LightLayer
   Rgb albedo;       // of the first hit; of an emitter without reflection, black
   Vec3f normal;     // shading normal of the first hit, world, turned towards the camera
   float depth = 0;  // of the first hit along the view axis, m
   bool hit = false;
+
+  void add(Rgb light, LightLayer layer) {
+    radiance += light;
+    layers[static_cast<std::size_t>(layer)] += light;
+  }
 };
 
 class Integrator {
