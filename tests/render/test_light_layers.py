@@ -25,9 +25,7 @@ def total(layers: Layers, names: set[str]) -> np.ndarray:
 
 @pytest.mark.parametrize("scene", OF)
 def test_layers_add_up_to_beauty(tmp_path: Path, scene: str) -> None:
-    layers = render_alone(
-        ROOT / "scenes" / scene / "scene.xml", tmp_path / "out.exr", "--size", "64x64", "--spp", 32
-    )
+    layers = render_alone(ROOT / "scenes" / scene / "scene.xml", tmp_path / "out.exr", "--size", "64x64", "--spp", 32)
     assert light_layers(layers) == OF[scene]
     np.testing.assert_allclose(total(layers, OF[scene]), beauty(layers), rtol=1e-5, atol=1e-6)
     for name in OF[scene]:

@@ -25,8 +25,9 @@ struct CameraSample {
 
 // What a camera sample brings back.
 struct SampleResult {
-  Rgb radiance;                          // W m^-2 sr^-1
-  std::array<Rgb, kLightLayers> layers;  // of it, by LightLayer
+  Rgb radiance;  // W m^-2 sr^-1
+  // Of it, by LightLayer; the indirect layer is left black: it is what the others leave over, and most light of a path is indirect.
+  std::array<Rgb, kLightLayers> layers;
   Rgb albedo;       // of the first hit; of an emitter without reflection, black
   Vec3f normal;     // shading normal of the first hit, world, turned towards the camera
   float depth = 0;  // of the first hit along the view axis, m
@@ -34,7 +35,7 @@ struct SampleResult {
 
   void add(Rgb light, LightLayer layer) {
     radiance += light;
-    layers[static_cast<std::size_t>(layer)] += light;
+    if (layer != LightLayer::kIndirect) layers[static_cast<std::size_t>(layer)] += light;
   }
 };
 

@@ -18,28 +18,28 @@ namespace fluxfarm {
 class LightHistory {
  public:
   // Of light that an emitter sends along the path's ray.
-  LightLayer layer() const { return layer_of(state_); }
+  LightLayer layer() const { return state_ == kUnscattered ? LightLayer::kDirect : static_cast<LightLayer>(state_); }
   // Of light that an emitter sends to the surface where the path is, to be scattered there by a continuous lobe.
-  LightLayer layer_by_surface() const { return layer_of(kNext[kContinuous][state_]); }
+  LightLayer layer_by_surface() const { return static_cast<LightLayer>(kNext[state_][kContinuous]); }
   // The same in a medium.
-  LightLayer layer_by_medium() const { return layer_of(kNext[kInMedium][state_]); }
+  LightLayer layer_by_medium() const { return static_cast<LightLayer>(kNext[state_][kInMedium]); }
 
   void scatter_at_surface(const BsdfSample& sample) {
-    state_ = kNext[static_cast<std::size_t>(sample.delta) + static_cast<std::size_t>(sample.passes)][state_];
+    state_ = kNext[state_][static_cast<std::size_t>(sample.delta) + static_cast<std::size_t>(sample.passes)];
   }
-  void scatter_in_medium() { state_ = kNext[kInMedium][state_]; }
+  void scatter_in_medium() { state_ = kNext[state_][kInMedium]; }
 
  private:
   // The layers, as LightLayer counts them, and one more.
   enum State : std::uint8_t { kDirect, kSpecular, kCaustic, kIndirect, kVolume, kUnscattered };
   enum Event { kContinuous, kDelta, kPass, kInMedium };
-  static constexpr std::array<std::array<State, 6>, 4> kNext = {{
-      {kIndirect, kSpecular, kIndirect, kIndirect, kVolume, kDirect},        // by a continuous lobe
-      {kCaustic, kSpecular, kCaustic, kIndirect, kVolume, kSpecular},        // by a delta lobe
-      {kDirect, kSpecular, kCaustic, kIndirect, kVolume, kUnscattered},      // straight on, as if the surface was not there
-      {kIndirect, kSpecular, kIndirect, kIndirect, kVolume, kVolume},        // in a medium
-  }};
-  static LightLayer layer_of(State state) { return state == kUnscattered ? LightLayer::kDirect : static_cast<LightLayer>(state); }
+  // By state, then by event: a continuous lobe, a delta lobe, straight on as if the surface was not there, a medium.
+  static constexpr std::array<std::array<State, 4>, 6> kNext = {{{kIndirect, kCaustic, kDirect, kIndirect},
+                                                                 {kSpecular, kSpecular, kSpecular, kSpecular},
+                                                                 {kIndirect, kCaustic, kCaustic, kIndirect},
+                                                                 {kIndirect, kIndirect, kIndirect, kIndirect},
+                                                                 {kVolume, kVolume, kVolume, kVolume},
+                                                                 {kDirect, kSpecular, kUnscattered, kVolume}}};
 
   State state_ = kUnscattered;
 };

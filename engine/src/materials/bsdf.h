@@ -20,7 +20,7 @@ struct BsdfSample {
   bool delta = false;  // wi has probability mass: next-event estimation cannot find it
   // Goes on as if the surface was not there, which is no scattering. Only where `delta`.
   bool passes = false;
-  float eta = 1;       // index of refraction on the side of wi over the one on the side of wo; 1 for reflection
+  float eta = 1;  // index of refraction on the side of wi over the one on the side of wo; 1 for reflection
 };
 
 struct BsdfValue {

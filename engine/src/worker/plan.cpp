@@ -59,7 +59,8 @@ std::string plan_json(const Scene& scene) {
              census.coloured_media ? "a medium whose extinction has a colour" : "no extinction has a colour"),
         part("textures", census.textures > 0, count(census.textures, "texture")),
         part("instances", census.instances > 0, count(census.instances, "instance") + " of shared meshes"),
-        part("specular and caustic layers", census.delta_lobes, census.delta_lobes ? "a smooth mirror, glass or coat" : "nothing smooth"),
+        part("specular and caustic layers", census.delta_lobes,
+             census.delta_lobes ? "a smooth mirror, glass or coat" : "nothing smooth"),
         part("volume layer", census.media > 0, census.media > 0 ? "a medium" : "no medium"),
         part("shading normals", census.shading_normals,
              census.shading_normals ? "a mesh with normals" : "all surfaces flat or exact")}}};

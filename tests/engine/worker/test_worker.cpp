@@ -6,12 +6,12 @@
 
 #include <algorithm>
 
+#include "film/tile_grid.h"
 #include "support/error.h"
 #include "support/scene_builder.h"
 #include "support/sky.h"
 #include "worker/codec.h"
 #include "worker/frame_socket.h"
-#include "film/tile_grid.h"
 #include "worker/tile_runner.h"
 
 namespace fluxfarm::testing {
@@ -139,9 +139,10 @@ TEST(Codec, DamagedTileSumsAreAnError) {
       decode_tile_sums(encode_tile_sums({{0, 0, 2, 2}, {0, 1}, 0, std::vector<float>(11), std::vector<float>(32), 0}), "here"),
       ResourceError);
   const LightLayers one = LightLayers().insert(LightLayer::kDirect);
-  EXPECT_THROW(decode_tile_sums(encode_tile_sums({{0, 0, 2, 2}, {0, 1}, 0, std::vector<float>(12), std::vector<float>(32), 0, one,
-                                                  std::vector<float>(11)}),
-                                "here"),
+  EXPECT_THROW(decode_tile_sums(
+                   encode_tile_sums(
+                       {{0, 0, 2, 2}, {0, 1}, 0, std::vector<float>(12), std::vector<float>(32), 0, one, std::vector<float>(11)}),
+                   "here"),
                ResourceError);
 }
 

@@ -36,11 +36,11 @@ struct VolumePath {
   const HomogeneousMedium* medium = nullptr;  // around the ray
   float eta_scale = 1;                        // undoes the radiance scaling of refraction in the roulette's view of the throughput
   // Of the last bounce, against which light that the ray finds is weighted.
-  bool delta = true;          // next-event estimation could not have found the last direction
-  float direction_pdf = 0;    // of that direction, sr^-1; unused while `delta`
-  Vec3f bounce_origin;        // where next-event estimation stood
+  bool delta = true;           // next-event estimation could not have found the last direction
+  float direction_pdf = 0;     // of that direction, sr^-1; unused while `delta`
+  Vec3f bounce_origin;         // where next-event estimation stood
   EmitterReference reference;  // what it knew of that place
-  float bounce_distance = 0;  // from there to the ray's origin through null boundaries, m
+  float bounce_distance = 0;   // from there to the ray's origin through null boundaries, m
   LightHistory history;
   SampleResult* result = nullptr;
 };
@@ -224,8 +224,7 @@ class VolumePathGroup {
       const Ray from_bounce{path.bounce_origin, ray.direction};
       Hit seen = hit;
       seen.t += path.bounce_distance;
-      const float pdf =
-          scene_.emitters().pdf(vertex.surface->emitter_index, path.reference, {vertex.point, seen, from_bounce});
+      const float pdf = scene_.emitters().pdf(vertex.surface->emitter_index, path.reference, {vertex.point, seen, from_bounce});
       weight = power_heuristic(path.direction_pdf, pdf);
     }
     path.result->add(path.throughput * emitted * weight, path.history.layer());
