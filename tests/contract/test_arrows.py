@@ -20,7 +20,7 @@ ENGINE = {
     "media": SHADING,
     "accel": SHADING,
     "scene": SHADING | {"textures", "materials", "emitters", "media", "accel"},
-    "integrators": SHADING | {"textures", "materials", "emitters", "media", "accel", "scene"},
+    "integrators": SHADING | {"textures", "materials", "emitters", "media", "accel", "scene", "film"},
     "io": {"support", "math", "film", "scene", "textures", "materials", "media", "sampling"},
     "worker": {*SHADING, "textures", "materials", "emitters", "media", "accel", "scene", "integrators", "film", "io"},
 }

@@ -13,7 +13,7 @@
 namespace fluxfarm {
 namespace {
 
-constexpr char kMagic[8] = {'F', 'L', 'U', 'X', 'F', 'L', 'M', '1'};
+constexpr char kMagic[8] = {'F', 'L', 'U', 'X', 'F', 'L', 'M', '2'};
 constexpr float kNoDepth = 1e10f;
 
 // Samples 0 .. n-1 fall round-robin into the replicates.
@@ -77,22 +77,43 @@ void read_value(std::ifstream& in, T& value) {
   in.read(reinterpret_cast<char*>(&value), sizeof value);
 }
 
+template <typename T>
+void write_values(std::ofstream& out, const std::vector<T>& values) {
+  out.write(reinterpret_cast<const char*>(values.data()), static_cast<std::streamsize>(values.size() * sizeof(T)));
+}
+
+template <typename T>
+void read_values(std::ifstream& in, std::vector<T>& values) {
+  in.read(reinterpret_cast<char*>(values.data()), static_cast<std::streamsize>(values.size() * sizeof(T)));
+}
+
 }  // namespace
 
-Film::Film(int width, int height, PixelRect crop)
-    : width_(width), height_(height), crop_(crop), pixels_(static_cast<std::size_t>(crop.pixels())) {}
+Film::Film(int width, int height, PixelRect crop, LightLayers layers)
+    : width_(width),
+      height_(height),
+      crop_(crop),
+      layers_(layers),
+      pixels_(static_cast<std::size_t>(crop.pixels())),
+      layer_sums_(pixels_.size() * layers.size() * 3) {}
 
 void Film::merge(const TileSums& tile) {
   if (!crop_.contains(tile.rect) || tile.radiance.size() != tile.radiance_size() || tile.features.size() != tile.features_size()) {
     throw Error("tile does not fit the film: rect " + std::to_string(tile.rect.x) + "," + std::to_string(tile.rect.y) + " " +
                 std::to_string(tile.rect.width) + "x" + std::to_string(tile.rect.height));
   }
+  if (tile.layers != layers_ || tile.layer_sums.size() != tile.layer_sums_size()) {
+    throw Error("tile does not fit the film: light layers " + std::to_string(tile.layers.bits()) + ", expected " +
+                std::to_string(layers_.bits()));
+  }
   const std::uint32_t replicates = tile.replicates();
+  const std::size_t layer_values = layers_.size() * 3;
   const float* radiance = tile.radiance.data();
   const float* features = tile.features.data();
+  const float* layers = tile.layer_sums.data();
   for (int y = tile.rect.y; y < tile.rect.y + tile.rect.height; ++y) {
     for (int x = tile.rect.x; x < tile.rect.x + tile.rect.width; ++x) {
-      Pixel& p = pixels_[static_cast<std::size_t>(y - crop_.y) * crop_.width + (x - crop_.x)];
+      Pixel& p = pixels_[index(x, y)];
       if (p.samples != tile.samples.begin) {
         throw Error("tile at " + std::to_string(tile.rect.x) + "," + std::to_string(tile.rect.y) + " begins at sample " +
                     std::to_string(tile.samples.begin) + ", but the film has " + std::to_string(p.samples));
@@ -102,6 +123,8 @@ void Film::merge(const TileSums& tile) {
         for (int c = 0; c < 3; ++c) sum[c] += static_cast<double>(*radiance++);
       }
       for (double& feature : p.features) feature += static_cast<double>(*features++);
+      double* layer_sum = layer_sums_.data() + index(x, y) * layer_values;
+      for (std::size_t i = 0; i < layer_values; ++i) layer_sum[i] += static_cast<double>(*layers++);
       p.samples = tile.samples.end;
     }
   }
@@ -150,10 +173,13 @@ Image Film::image(PixelRect rect, const ImageInfo& info) const {
                                         "N.X", "N.Y", "N.Z", "Z",        "error.noise", "samples"};
   if (!crop_.contains(rect)) throw Error("the part of the film that was asked for lies outside its crop");
   Image image{width_, height_, rect, {}, {}};
-  for (const char* name : kNames) {
-    image.channels.push_back({name, {}});
-    image.channels.back().values.reserve(static_cast<std::size_t>(rect.pixels()));
+  for (const char* name : kNames) image.channels.push_back({name, {}});
+  for (const LightLayer layer : layers_.list()) {
+    const std::string name = kLightLayerNames[static_cast<std::size_t>(layer)];
+    for (const char* channel : {".R", ".G", ".B"}) image.channels.push_back({name + channel, {}});
   }
+  for (ImageChannel& channel : image.channels) channel.values.reserve(static_cast<std::size_t>(rect.pixels()));
+  const std::size_t layer_values = layers_.size() * 3;
   std::uint32_t max_samples = 0;
   for (int y = rect.y; y < rect.y + rect.height; ++y) {
     for (int x = rect.x; x < rect.x + rect.width; ++x) {
@@ -168,6 +194,8 @@ Image Film::image(PixelRect rect, const ImageInfo& info) const {
       put(hits > 0 ? p.features[6] / hits : kNoDepth);
       put(m.has_variance ? std::sqrt(m.luminance_variance) : std::numeric_limits<double>::infinity());
       put(p.samples);
+      const double* layer_sum = layer_sums_.data() + index(x, y) * layer_values;
+      for (std::size_t i = 0; i < layer_values; ++i) put(layer_sum[i] * scale);
       max_samples = std::max(max_samples, p.samples);
     }
   }
@@ -189,17 +217,15 @@ Rgb Film::replicate_mean(int x, int y, std::uint32_t replicate) const {
   return {static_cast<float>(sum[0] / count), static_cast<float>(sum[1] / count), static_cast<float>(sum[2] / count)};
 }
 
-const Film::Pixel& Film::pixel(int x, int y) const {
-  return pixels_[static_cast<std::size_t>(y - crop_.y) * crop_.width + (x - crop_.x)];
-}
-
 void Film::save(const std::filesystem::path& path) const {
   static_assert(std::is_trivially_copyable_v<Pixel> && sizeof(Pixel) == 8 * (3 * kFilmReplicates + kFeatures + 1));
   std::ofstream out(path, std::ios::binary);
   out.write(kMagic, sizeof kMagic);
   for (const int value : {width_, height_, crop_.x, crop_.y, crop_.width, crop_.height}) write_value(out, value);
+  write_value(out, layers_.bits());
   write_value(out, non_finite_samples_);
-  out.write(reinterpret_cast<const char*>(pixels_.data()), static_cast<std::streamsize>(pixels_.size() * sizeof(Pixel)));
+  write_values(out, pixels_);
+  write_values(out, layer_sums_);
   out.flush();
   if (!out) throw ResourceError(path.string() + ": cannot write the film, is the disk full?");
 }
@@ -212,12 +238,15 @@ Film Film::load(const std::filesystem::path& path) {
   int width = 0, height = 0;
   PixelRect crop;
   for (int* value : {&width, &height, &crop.x, &crop.y, &crop.width, &crop.height}) read_value(in, *value);
-  if (!in || crop.empty() || !PixelRect{0, 0, width, height}.contains(crop)) {
+  std::uint32_t layers = 0;
+  read_value(in, layers);
+  if (!in || crop.empty() || LightLayers(layers).bits() != layers || !PixelRect{0, 0, width, height}.contains(crop)) {
     throw ResourceError(path.string() + ": damaged film header");
   }
-  Film film(width, height, crop);
+  Film film(width, height, crop, LightLayers(layers));
   read_value(in, film.non_finite_samples_);
-  in.read(reinterpret_cast<char*>(film.pixels_.data()), static_cast<std::streamsize>(film.pixels_.size() * sizeof(Pixel)));
+  read_values(in, film.pixels_);
+  read_values(in, film.layer_sums_);
   if (!in) throw ResourceError(path.string() + ": film file is cut short");
   return film;
 }

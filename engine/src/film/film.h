@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "film/image.h"
+#include "film/light_layer.h"
 #include "film/pixel_rect.h"
 #include "film/tile_sums.h"
 #include "math/rgb.h"
@@ -47,14 +48,15 @@ struct PixelEstimate {
 
 class Film {
  public:
-  // Holds the pixels of `crop` of a width x height frame.
-  Film(int width, int height, PixelRect crop);
+  // Holds the pixels of `crop` of a width x height frame, with those light layers.
+  Film(int width, int height, PixelRect crop, LightLayers layers = {});
 
   // Reads what save() wrote. Throws ResourceError when the file cannot be read or is not a film.
   static Film load(const std::filesystem::path& path);
   void save(const std::filesystem::path& path) const;
 
-  // Adds one tile's sums. The tile must lie in the crop and carry on where its pixels' samples end: Error otherwise.
+  // Adds one tile's sums. The tile must lie in the crop, have the film's layers and carry on where its pixels' samples end: Error
+  // otherwise.
   // Threads may merge disjoint tiles at the same time.
   void merge(const TileSums& tile);
 
@@ -62,7 +64,7 @@ class Film {
   // The pixel at (x, y) of the frame, R G B. No variance below two replicates.
   PixelEstimate estimate(int x, int y) const;
   std::uint32_t samples(int x, int y) const { return pixel(x, y).samples; }
-  // Layers R G B, albedo.*, N.*, Z, error.noise, samples of `rect` (inside the crop), with header attributes.
+  // Layers R G B, the light layers, albedo.*, N.*, Z, error.noise, samples of `rect` (inside the crop), with header attributes.
   // error.noise is the standard error of the pixel's Rec.709 luminance; infinite below two replicates: no claim.
   // Z is the mean depth of the samples that hit something, 1e10 where none did.
   Image image(PixelRect rect, const ImageInfo& info) const;
@@ -70,6 +72,7 @@ class Film {
   int width() const { return width_; }
   int height() const { return height_; }
   PixelRect crop() const { return crop_; }
+  LightLayers layers() const { return layers_; }
   // Sum of one replicate of the pixel at (x, y) of the frame; for tests and tools.
   Rgb replicate_mean(int x, int y, std::uint32_t replicate) const;
 
@@ -80,11 +83,15 @@ class Film {
     std::uint32_t samples = 0;
     std::uint32_t padding = 0;  // written to the film file: keep it zero
   };
-  const Pixel& pixel(int x, int y) const;
+  std::size_t index(int x, int y) const { return static_cast<std::size_t>(y - crop_.y) * crop_.width + (x - crop_.x); }
+  const Pixel& pixel(int x, int y) const { return pixels_[index(x, y)]; }
+
   int width_, height_;
   PixelRect crop_;
+  LightLayers layers_;
   std::uint64_t non_finite_samples_ = 0;
   std::vector<Pixel> pixels_;
+  std::vector<double> layer_sums_;  // [pixel][layers_.list()][R G B]
 };
 
 }  // namespace fluxfarm

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "film/light_layer.h"
 #include "film/pixel_rect.h"
 #include "math/rgb.h"
 #include "math/vec.h"
@@ -28,10 +29,14 @@ struct TileSums {
   std::vector<float> features;
   // Samples whose radiance was not finite; they are in the sums as zero.
   std::uint64_t non_finite_samples = 0;
+  // Radiance once more, by layers and without replicates: [pixel][layers.list()][R G B].
+  LightLayers layers = {};
+  std::vector<float> layer_sums = {};
 
   std::uint32_t replicates() const { return std::min(samples.size(), kFilmReplicates); }
   std::size_t radiance_size() const { return static_cast<std::size_t>(rect.pixels()) * replicates() * 3; }
   std::size_t features_size() const { return static_cast<std::size_t>(rect.pixels()) * kFeatures; }
+  std::size_t layer_sums_size() const { return static_cast<std::size_t>(rect.pixels()) * layers.size() * 3; }
 };
 
 }  // namespace fluxfarm

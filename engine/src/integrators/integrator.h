@@ -4,11 +4,13 @@
 // without its caller knowing.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <span>
 
 #include "accel/ray_queries.h"
+#include "film/light_layer.h"
 #include "math/rgb.h"
 #include "math/vec.h"
 #include "scene/scene.h"
@@ -23,11 +25,18 @@ struct CameraSample {
 
 // What a camera sample brings back.
 struct SampleResult {
-  Rgb radiance;     // W m^-2 sr^-1
+  Rgb radiance;  // W m^-2 sr^-1
+  // Of it, by LightLayer; the indirect layer is left black: it is what the others leave over, and most light of a path is indirect.
+  std::array<Rgb, kLightLayers> layers;
   Rgb albedo;       // of the first hit; of an emitter without reflection, black
   Vec3f normal;     // shading normal of the first hit, world, turned towards the camera
   float depth = 0;  // of the first hit along the view axis, m
   bool hit = false;
+
+  void add(Rgb light, LightLayer layer) {
+    radiance += light;
+    if (layer != LightLayer::kIndirect) layers[static_cast<std::size_t>(layer)] += light;
+  }
 };
 
 class Integrator {

@@ -18,7 +18,9 @@ struct BsdfSample {
   Rgb weight;          // f |cos wi| / pdf for a continuous lobe; reflectance or transmittance over its probability for a delta
   float pdf = 0;       // solid angle, sr^-1; 0 for a delta direction
   bool delta = false;  // wi has probability mass: next-event estimation cannot find it
-  float eta = 1;       // index of refraction on the side of wi over the one on the side of wo; 1 for reflection
+  // Goes on as if the surface was not there, which is no scattering. Only where `delta`.
+  bool passes = false;
+  float eta = 1;  // index of refraction on the side of wi over the one on the side of wo; 1 for reflection
 };
 
 struct BsdfValue {

@@ -29,8 +29,10 @@ inline std::optional<Vec3f> half_vector(const Vec3f& wo, const Vec3f& wi, float 
   return h * (std::copysign(1.0f, h.z) / std::sqrt(length2));
 }
 
-// All light of that direction, tinted, on its way as if there were no surface.
+// All light of that direction, tinted, scattered straight on.
 inline BsdfSample straight_on(const Vec3f& wo, Rgb tint) { return {.wi = -wo, .weight = tint, .delta = true}; }
+// All light of that direction, on its way as if there were no surface.
+inline BsdfSample pass(const Vec3f& wo) { return {.wi = -wo, .weight = Rgb{1.0f}, .delta = true, .passes = true}; }
 
 // A random number that was stretched after a choice, kept in [0,1).
 inline float below_one(float u) { return std::min(u, 1 - 0x1p-24f); }

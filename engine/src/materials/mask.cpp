@@ -20,7 +20,7 @@ class Mask final : public Bsdf {
   }
 
   std::optional<BsdfSample> sample(const Vec3f& wo, float u_lobe, Vec2f u) const override {
-    if (u_lobe >= opacity_) return straight_on(wo, Rgb{1.0f});
+    if (u_lobe >= opacity_) return pass(wo);
     std::optional<BsdfSample> s = covered_.sample(wo, below_one(u_lobe / opacity_), u);
     if (s) s->pdf *= opacity_;
     return s;

@@ -8,7 +8,7 @@ namespace {
 class Null final : public Bsdf {
  public:
   BsdfValue value(const Vec3f&, const Vec3f&) const override { return {}; }
-  std::optional<BsdfSample> sample(const Vec3f& wo, float, Vec2f) const override { return straight_on(wo, Rgb{1.0f}); }
+  std::optional<BsdfSample> sample(const Vec3f& wo, float, Vec2f) const override { return pass(wo); }
   Rgb albedo(const Vec3f&) const override { return Rgb{1.0f}; }
   bool has_continuous_lobe() const override { return false; }
   bool chooses_lobe() const override { return false; }

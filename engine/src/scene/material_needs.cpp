@@ -12,23 +12,26 @@ class Collector {
 
   void operator()(const DiffuseDescription& d) { texture(d.reflectance_texture); }
   void operator()(const DielectricDescription& d) {
-    texture(d.specular_reflectance_texture);
-    texture(d.specular_transmittance_texture);
+    needs_.delta_lobes = true;
+    textures(d);
   }
-  void operator()(const ConductorDescription& d) { texture(d.specular_reflectance_texture); }
+  void operator()(const ConductorDescription& d) {
+    needs_.delta_lobes = true;
+    texture(d.specular_reflectance_texture);
+  }
   void operator()(const RoughConductorDescription& d) {
-    (*this)(d.conductor);
+    texture(d.conductor.specular_reflectance_texture);
     roughness(d.roughness);
   }
   void operator()(const RoughDielectricDescription& d) {
-    (*this)(d.dielectric);
+    textures(d.dielectric);
     roughness(d.roughness);
   }
   void operator()(const PlasticDescription& d) {
-    texture(d.diffuse_reflectance_texture);
-    texture(d.specular_reflectance_texture);
+    needs_.delta_lobes = true;
+    textures(d);
   }
-  void operator()(const RoughPlasticDescription& d) { (*this)(d.plastic); }
+  void operator()(const RoughPlasticDescription& d) { textures(d.plastic); }
   void operator()(const PrincipledDescription& d) {
     texture(d.base_color_texture);
     for (const ScalarParameter* p : {&d.roughness, &d.anisotropic, &d.metallic, &d.spec_trans, &d.spec_tint, &d.sheen,
@@ -80,6 +83,15 @@ class Collector {
     needs_.anisotropic |= r.alpha_u != r.alpha_v;
     needs_.tangents |= needs_.anisotropic;
     texture(r.alpha_texture);
+  }
+
+  void textures(const DielectricDescription& d) {
+    texture(d.specular_reflectance_texture);
+    texture(d.specular_transmittance_texture);
+  }
+  void textures(const PlasticDescription& d) {
+    texture(d.diffuse_reflectance_texture);
+    texture(d.specular_reflectance_texture);
   }
 
   void texture(int index) {

@@ -14,7 +14,8 @@ struct MaterialNeeds {
   bool uvs = false;             // some texture lies over uv
   bool uv_derivatives = false;  // for bump maps
   bool vertex_colors = false;
-  bool masks = false;  // light goes straight through, in part or everywhere
+  bool masks = false;        // light goes straight through, in part or everywhere
+  bool delta_lobes = false;  // some light is scattered into single directions
 };
 
 // `material`: index into the description's materials, which do not contain themselves.

@@ -30,6 +30,7 @@ struct Census {
   bool environment_map = false;  // an image
   std::size_t materials = 0, textures = 0;
   bool delta_materials = false;        // some material has only delta lobes
+  bool delta_lobes = false;            // or has one among others: mirrors and glass are seen, caustics fall
   bool anisotropic_materials = false;  // tangent frames are needed
   bool normal_maps = false;            // or bump maps
   bool vertex_colors = false;          // a texture shows them

@@ -185,6 +185,8 @@ std::string encode_tile_sums(const TileSums& sums) {
   message.set_radiance(bytes_of(sums.radiance));
   message.set_features(bytes_of(sums.features));
   message.set_non_finite_samples(sums.non_finite_samples);
+  message.set_layers(sums.layers.bits());
+  message.set_layer_sums(bytes_of(sums.layer_sums));
   return message.SerializeAsString();
 }
 
@@ -196,9 +198,12 @@ TileSums decode_tile_sums(std::string_view bytes, const std::string& where) {
                 message.seed(),
                 floats_of(message.radiance()),
                 floats_of(message.features()),
-                message.non_finite_samples()};
+                message.non_finite_samples(),
+                LightLayers(message.layers()),
+                floats_of(message.layer_sums())};
   if (sums.rect.empty() || sums.samples.begin >= sums.samples.end || sums.radiance.size() != sums.radiance_size() ||
-      sums.features.size() != sums.features_size()) {
+      sums.features.size() != sums.features_size() || sums.layers.bits() != message.layers() ||
+      sums.layer_sums.size() != sums.layer_sums_size()) {
     throw ResourceError(where + ": the tile's sums contradict themselves");
   }
   return sums;

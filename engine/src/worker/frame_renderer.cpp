@@ -6,6 +6,7 @@
 #include "film/error_goal.h"
 #include "film/pass_schedule.h"
 #include "film/tile_grid.h"
+#include "integrators/light_history.h"
 #include "support/parallel.h"
 #include "worker/tile_runner.h"
 
@@ -38,7 +39,7 @@ bool cut_to_time(SampleRange& pass, double seconds, const TimelinePoint& now) {
 
 FrameResult render_frame(const Scene& scene, const Integrator& integrator, const FrameSettings& settings,
                          const std::atomic<bool>& cancelled, const std::function<void(const TimelinePoint&)>& after_pass) {
-  FrameResult result{Film(scene.film().width, scene.film().height, settings.crop), {}, {}, 0, 0};
+  FrameResult result{Film(scene.film().width, scene.film().height, settings.crop, light_layers(scene.census())), {}, {}, 0, 0};
   const Goal& goal = settings.goal;
   const std::vector<PixelRect> tiles = make_tiles(settings.crop, goal.rel_error ? kErrorTile : settings.tile_size);
   std::vector<RayQueries> queries(static_cast<std::size_t>(settings.threads), RayQueries(scene.accelerator()));

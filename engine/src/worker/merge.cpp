@@ -17,7 +17,7 @@
 namespace fluxfarm {
 namespace {
 
-// A larger film (252 bytes a pixel) is read again rather than kept.
+// A larger film (264 bytes a pixel and 24 for each light layer) is read again rather than kept.
 constexpr std::int64_t kMostKeptPixels = 1 << 20;
 
 TileSums read_tile(const std::filesystem::path& path) {
@@ -38,9 +38,12 @@ void merge_tiles(Film& film, std::span<const std::filesystem::path> tiles) {
   for (const std::filesystem::path& path : tiles) film.merge(read_tile(path));
 }
 
+// The film that the request's tiles are merged into. A new one takes its light layers from the first tile.
 template <typename Request>
 Film first_film(const Request& request, PixelRect crop) {
-  return request.film_in.empty() ? Film(request.width, request.height, crop) : Film::load(request.film_in);
+  if (!request.film_in.empty()) return Film::load(request.film_in);
+  const LightLayers layers = request.tiles.empty() ? LightLayers() : read_tile(request.tiles.front()).layers;
+  return Film(request.width, request.height, crop, layers);
 }
 
 }  // namespace

@@ -34,6 +34,7 @@ std::string plan_json(const Scene& scene) {
         {"media", census.media},
         {"null_boundaries", census.null_boundaries},
         {"delta_materials", census.delta_materials},
+        {"delta_lobes", census.delta_lobes},
         {"masks", census.masks},
         {"normal_maps", census.normal_maps},
         {"vertex_colors", census.vertex_colors}}},
@@ -58,6 +59,9 @@ std::string plan_json(const Scene& scene) {
              census.coloured_media ? "a medium whose extinction has a colour" : "no extinction has a colour"),
         part("textures", census.textures > 0, count(census.textures, "texture")),
         part("instances", census.instances > 0, count(census.instances, "instance") + " of shared meshes"),
+        part("specular and caustic layers", census.delta_lobes,
+             census.delta_lobes ? "a smooth mirror, glass or coat" : "nothing smooth"),
+        part("volume layer", census.media > 0, census.media > 0 ? "a medium" : "no medium"),
         part("shading normals", census.shading_normals,
              census.shading_normals ? "a mesh with normals" : "all surfaces flat or exact")}}};
   return plan.dump();

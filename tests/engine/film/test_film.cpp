@@ -14,16 +14,23 @@ namespace fluxfarm {
 namespace {
 
 constexpr PixelRect kCrop{4, 2, 20, 12};
+const LightLayers kLayers = LightLayers().insert(LightLayer::kDirect).insert(LightLayer::kIndirect);
 
 // Sums of a tile made of sample values that depend on pixel and sample alone.
 TileSums tile_of(PixelRect rect, SampleRange samples, float (*value)(int, int, std::uint32_t)) {
-  TileSums sums{rect, samples, 0, {}, {}, 0};
+  TileSums sums{rect, samples, 0, {}, {}, 0, kLayers, {}};
   for (int y = rect.y; y < rect.y + rect.height; ++y) {
     for (int x = rect.x; x < rect.x + rect.width; ++x) {
       for (std::uint32_t k = 0; k < sums.replicates(); ++k) {
         float sum = 0;
         for (std::uint32_t i = samples.begin + k; i < samples.end; i += kFilmReplicates) sum += value(x, y, i);
         for (int c = 0; c < 3; ++c) sums.radiance.push_back(sum * static_cast<float>(c + 1));
+      }
+      // A quarter of radiance is direct, the rest indirect.
+      float total = 0;
+      for (std::uint32_t i = samples.begin; i < samples.end; ++i) total += value(x, y, i);
+      for (const float share : {0.25f, 0.75f}) {
+        for (int c = 0; c < 3; ++c) sums.layer_sums.push_back(share * total * static_cast<float>(c + 1));
       }
       for (int f = 0; f < kFeatures; ++f) sums.features.push_back(f == kFeatures - 1 ? static_cast<float>(samples.size()) : 0.5f);
     }
@@ -43,7 +50,7 @@ std::vector<SampleRange> passes(std::uint32_t goal) {
 }
 
 Film film_of(const std::vector<SampleRange>& schedule, int tile, bool reversed) {
-  Film film(40, 30, kCrop);
+  Film film(40, 30, kCrop, kLayers);
   for (const SampleRange pass : schedule) {
     std::vector<PixelRect> tiles;
     for (int y = kCrop.y; y < kCrop.y + kCrop.height; y += tile) {
@@ -91,12 +98,14 @@ TEST(Film, SurvivesAFileToTheBit) {
 }
 
 TEST(Film, RefusesATileTwiceOrOutOfOrderOrOutside) {
-  Film film(40, 30, kCrop);
+  Film film(40, 30, kCrop, kLayers);
   const TileSums tile = tile_of({4, 2, 8, 8}, {0, 1}, noise);
   film.merge(tile);
   EXPECT_THROW(film.merge(tile), Error);
   EXPECT_THROW(film.merge(tile_of({12, 2, 8, 8}, {1, 2}, noise)), Error);
   EXPECT_THROW(film.merge(tile_of({0, 0, 8, 8}, {0, 1}, noise)), Error);
+  Film without_layers(40, 30, kCrop);
+  EXPECT_THROW(without_layers.merge(tile), Error);
 }
 
 TEST(Film, MeansAreSumsOverCountsForEveryNumberOfSamples) {
@@ -106,6 +115,9 @@ TEST(Film, MeansAreSumsOverCountsForEveryNumberOfSamples) {
     for (std::uint32_t i = 0; i < goal; ++i) expected += static_cast<double>(noise(5, 3, i)) / goal;
     EXPECT_NEAR(static_cast<double>((*image.find("R"))[0]), expected, 1e-6 * expected) << goal;
     EXPECT_NEAR(static_cast<double>((*image.find("G"))[0]), 2 * expected, 2e-6 * expected) << goal;
+    EXPECT_NEAR(static_cast<double>((*image.find("direct.R"))[0]), expected / 4, 1e-6 * expected) << goal;
+    EXPECT_NEAR(static_cast<double>((*image.find("indirect.B"))[0]), expected * 9 / 4, 3e-6 * expected) << goal;
+    EXPECT_EQ(image.find("caustic.R"), nullptr);
     EXPECT_EQ((*image.find("samples"))[0], static_cast<float>(goal));
   }
 }
@@ -113,7 +125,7 @@ TEST(Film, MeansAreSumsOverCountsForEveryNumberOfSamples) {
 // Exponential samples have variance 1: the variance of the mean of n is 1/n. Luminance weighs the channels 1, 2, 3.
 TEST(Film, NoiseIsTheStandardErrorOfTheMean) {
   const std::uint32_t n = 96;
-  Film film(200, 100, {0, 0, 200, 100});
+  Film film(200, 100, {0, 0, 200, 100}, kLayers);
   for (const SampleRange pass : passes(n)) film.merge(tile_of({0, 0, 200, 100}, pass, noise));
   const Image image = film.image(film.crop(), {});
   double mean_square = 0;
@@ -127,7 +139,7 @@ TEST(Film, NoiseIsTheStandardErrorOfTheMean) {
 }
 
 TEST(Film, ClaimsNoErrorFromOneReplicate) {
-  Film film(40, 30, kCrop);
+  Film film(40, 30, kCrop, kLayers);
   film.merge(tile_of(kCrop, {0, 1}, noise));
   EXPECT_FALSE(film.summary().error_noise.has_value());
   EXPECT_TRUE(std::isinf((*film.image(kCrop, {}).find("error.noise"))[0]));

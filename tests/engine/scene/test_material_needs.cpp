@@ -1,6 +1,7 @@
 // What a scene computes at a hit follows from its materials: no more than they need.
 #include <gtest/gtest.h>
 
+#include "materials/cases.h"
 #include "scene/material_needs.h"
 
 namespace fluxfarm {
@@ -31,6 +32,28 @@ TEST(MaterialNeeds, OfNormalMapsAreTangentsAndOfBumpMapsDerivativesToo) {
   EXPECT_TRUE(normals.normal_maps && normals.tangents && normals.uvs);
   EXPECT_FALSE(normals.uv_derivatives || normals.anisotropic);
   EXPECT_TRUE(needs({BumpMapDescription{1, 0, 1}, DiffuseDescription{}}).uv_derivatives);
+}
+
+// Who scatters into single directions has said so; and who has said so does it.
+TEST(MaterialNeeds, OfDeltaLobesAreThoseThatSamplingShows) {
+  std::vector<testing::MaterialCase> cases = testing::continuous_cases();
+  cases.push_back({"principled", PrincipledDescription{}});
+  cases.push_back({"gltf", GltfDescription{}});
+  cases.push_back({"dielectric", DielectricDescription{}});
+  cases.push_back({"thindielectric", ThinDielectricDescription{}});
+  cases.push_back({"conductor", testing::gold()});
+  cases.push_back({"null", NullDescription{}});
+  for (const testing::MaterialCase& c : cases) {
+    const std::unique_ptr<Bsdf> bsdf = testing::make(c.description);
+    bool delta = false;
+    for (int i = 0; i < 64; ++i) {
+      const float u = (static_cast<float>(i) + 0.5f) / 64;
+      const std::optional<BsdfSample> s = bsdf->sample(testing::direction(0.4f, 1), u, {u, 1 - u});
+      delta |= s && s->delta && !s->passes;
+    }
+    EXPECT_EQ(needs({c.description}).delta_lobes, delta) << c.name;
+  }
+  EXPECT_TRUE(needs({MaskDescription{1, {0.5f}}, PlasticDescription{}}).delta_lobes);
 }
 
 TEST(MaterialNeeds, OfTwoRoughnessesAreTangents) {

@@ -22,9 +22,10 @@ class Merge : public ::testing::Test {
 
   // The tile of one pass of a 3 x 2 frame, with sums that no other pass has.
   fs::path tile(SampleRange samples) const {
-    TileSums sums{{0, 0, 3, 2}, samples, 1, {}, {}, 0};
+    TileSums sums{{0, 0, 3, 2}, samples, 1, {}, {}, 0, LightLayers().insert(LightLayer::kVolume), {}};
     for (std::size_t i = 0; i < sums.radiance_size(); ++i) sums.radiance.push_back(0.1f * static_cast<float>(i + samples.end));
     for (std::size_t i = 0; i < sums.features_size(); ++i) sums.features.push_back(0.3f * static_cast<float>(i + samples.begin));
+    for (std::size_t i = 0; i < sums.layer_sums_size(); ++i) sums.layer_sums.push_back(0.7f * static_cast<float>(i + samples.end));
     const fs::path path = folder_ / ("pass-" + std::to_string(samples.begin) + "-" + std::to_string(samples.end));
     std::ofstream(path, std::ios::binary) << encode_tile_sums(sums);
     return path;

@@ -122,6 +122,9 @@ TEST(Codec, TileSumsSurviveTheWire) {
   const TileSums back = decode_tile_sums(encode_tile_sums(sums), "here");
   EXPECT_EQ(sums.radiance, back.radiance);
   EXPECT_EQ(sums.features, back.features);
+  EXPECT_EQ(sums.layers, back.layers);
+  EXPECT_EQ(sums.layers.size(), 4u);
+  EXPECT_EQ(sums.layer_sums, back.layer_sums);
   EXPECT_EQ(sums.rect, back.rect);
   EXPECT_EQ(sums.samples, back.samples);
   EXPECT_EQ(sums.seed, back.seed);
@@ -135,6 +138,12 @@ TEST(Codec, DamagedTileSumsAreAnError) {
   EXPECT_THROW(
       decode_tile_sums(encode_tile_sums({{0, 0, 2, 2}, {0, 1}, 0, std::vector<float>(11), std::vector<float>(32), 0}), "here"),
       ResourceError);
+  const LightLayers one = LightLayers().insert(LightLayer::kDirect);
+  EXPECT_THROW(decode_tile_sums(
+                   encode_tile_sums(
+                       {{0, 0, 2, 2}, {0, 1}, 0, std::vector<float>(12), std::vector<float>(32), 0, one, std::vector<float>(11)}),
+                   "here"),
+               ResourceError);
 }
 
 TEST(FrameSocket, RefusesFramesThatAreTooLongAndEndsAtEndOfFile) {

@@ -3,6 +3,7 @@
 #include <array>
 #include <limits>
 
+#include "integrators/light_history.h"
 #include "integrators/path/multiple_importance.h"
 #include "integrators/path/path_vertex.h"
 #include "integrators/path/pixel_groups.h"
@@ -27,12 +28,14 @@ struct Path {
   float eta_scale = 1;  // undoes the radiance scaling of refraction in the roulette's view of the throughput
   float bsdf_pdf = 0;   // of the last direction; unused while `delta`
   bool delta = true;    // next-event estimation could not have found the last direction
+  LightHistory history = {};
   SampleResult* result = nullptr;
 };
 
 // Light on its way to a path, if the shadow ray of the same index gets through.
 struct PendingLight {
   Rgb radiance;
+  LightLayer layer = LightLayer::kDirect;
   SampleResult* result = nullptr;
 };
 
@@ -116,6 +119,7 @@ class PathGroup {
     path.eta_scale *= scatter->eta * scatter->eta;
     path.bsdf_pdf = scatter->pdf;
     path.delta = scatter->delta;
+    path.history.scatter_at_surface(*scatter);
     if (path.throughput.is_black()) return false;
     if (depth + 1 >= method_.rr_depth && !survives(i, depth)) return false;
     const Vec3f direction = vertex.frame.to_world(scatter->wi);
@@ -142,17 +146,17 @@ class PathGroup {
       const float pdf = scene_.emitters().pdf(vertex.surface->emitter_index, references_[i], {vertex.point, hits_[i], ray});
       weight = power_heuristic(path.bsdf_pdf, pdf);
     }
-    path.result->radiance += path.throughput * emitted * weight;
+    path.result->add(path.throughput * emitted * weight, path.history.layer());
   }
 
   // Light from outside. Next-event estimation could have found that of the map, too, but never the constant one.
   void add_environment(Path& path, Vec3f direction) const {
-    if (scene_.environment()) path.result->radiance += path.throughput * *scene_.environment();
+    if (scene_.environment()) path.result->add(path.throughput * *scene_.environment(), path.history.layer());
     const auto& [map, choice_probability] = scene_.environment_map();
     if (map == nullptr) return;
     const auto [radiance, pdf] = map->from(direction);
     const float weight = path.delta ? 1.0f : power_heuristic(path.bsdf_pdf, pdf * choice_probability);
-    path.result->radiance += path.throughput * radiance * weight;
+    path.result->add(path.throughput * radiance * weight, path.history.layer());
   }
 
   // Next-event estimation: one emitter, one point of it. Leaves a shadow ray and the light that it stands for.
@@ -172,13 +176,13 @@ class PathGroup {
     shadow_rays_[lights_] = *shadow;
     const float weight = light->delta ? 1.0f : power_heuristic(light->pdf_solid_angle * choice->probability, scatter.pdf);
     const Rgb arriving = scatter.f * light->weight * (std::fabs(wi.z) * weight / choice->probability);
-    pending_[lights_++] = {path_[i].throughput * arriving, path_[i].result};
+    pending_[lights_++] = {path_[i].throughput * arriving, path_[i].history.layer_by_surface(), path_[i].result};
   }
 
   void gather_lights(bool coherent) {
     queries_.occluded({shadow_rays_.data(), lights_}, {occluded_.data(), lights_}, coherent);
     for (std::size_t i = 0; i < lights_; ++i) {
-      if (!occluded_[i]) pending_[i].result->radiance += pending_[i].radiance;
+      if (!occluded_[i]) pending_[i].result->add(pending_[i].radiance, pending_[i].layer);
     }
   }
 

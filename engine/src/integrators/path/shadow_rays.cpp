@@ -27,8 +27,8 @@ void ShadowRays::gather_unobstructed(bool coherent) {
   for (std::size_t i = 0; i < size_; ++i) {
     if (occluded_[i]) continue;
     const Light& light = lights_[i];
-    light.result->radiance +=
-        light.medium == nullptr ? light.radiance : light.radiance * light.medium->transmittance(rays_[i].t_max);
+    light.result->add(light.medium == nullptr ? light.radiance : light.radiance * light.medium->transmittance(rays_[i].t_max),
+                      light.layer);
   }
 }
 
@@ -40,7 +40,7 @@ bool ShadowRays::pass(std::size_t i) {
   const bool arrives = hit.shape == Hit::kNone;
   if (!arrives && !scene_.boundary(hit.shape).invisible) return false;
   if (light.medium != nullptr) light.radiance *= light.medium->transmittance(arrives ? ray.t_max : hit.t);
-  if (arrives) light.result->radiance += light.radiance;
+  if (arrives) light.result->add(light.radiance, light.layer);
   if (arrives || light.radiance.is_black()) return false;
   const SurfacePoint point = scene_.surface(hit.shape).shape->surface_point(ray, hit);
   light.medium = scene_.boundary(hit.shape).towards(ray.direction, point, light.medium);

@@ -13,22 +13,22 @@ class ShadowRays {
  public:
   ShadowRays(const Scene& scene, RayQueries& queries) : scene_(scene), queries_(queries) {}
 
-  // `radiance` arrives through `ray`, which starts in `medium`, if nothing is in between. At most kMaxPaths at a time.
-  void add(const Ray& ray, const HomogeneousMedium* medium, Rgb radiance, SampleResult& result) {
+  struct Light {
+    Rgb radiance;
+    LightLayer layer = LightLayer::kDirect;
+    const HomogeneousMedium* medium = nullptr;  // in which its ray starts
+    SampleResult* result = nullptr;
+  };
+  // `light` arrives through `ray` if nothing is in between. At most kMaxPaths at a time.
+  void add(const Ray& ray, const Light& light) {
     rays_[size_] = ray;
-    lights_[size_++] = {radiance, medium, &result};
+    lights_[size_++] = light;
   }
 
   // Adds what gets through to the results, and forgets it.
   void gather(bool coherent);
 
  private:
-  struct Light {
-    Rgb radiance;
-    const HomogeneousMedium* medium = nullptr;
-    SampleResult* result = nullptr;
-  };
-
   void gather_unobstructed(bool coherent);
   bool pass(std::size_t i);
 

@@ -3,6 +3,7 @@
 #include <array>
 #include <limits>
 
+#include "integrators/light_history.h"
 #include "integrators/path/multiple_importance.h"
 #include "integrators/path/path_vertex.h"
 #include "integrators/path/pixel_groups.h"
@@ -40,6 +41,7 @@ struct VolumePath {
   Vec3f bounce_origin;         // where next-event estimation stood
   EmitterReference reference;  // what it knew of that place
   float bounce_distance = 0;   // from there to the ray's origin through null boundaries, m
+  LightHistory history;
   SampleResult* result = nullptr;
 };
 
@@ -153,10 +155,11 @@ class VolumePathGroup {
     const EmitterReference reference{position, {0, 0, 0}};
     if (const std::optional<LightChoice> light = choose_light(i, step, reference)) {
       const float scattered = phase.value(ray.direction, light->sample.wi);
-      add_light(i, *light, position, path.medium, Rgb{scattered}, scattered);
+      add_light(i, *light, {position, path.medium, path.history.layer_by_medium()}, Rgb{scattered}, scattered);
     }
     const Vec3f direction = phase.sample(ray.direction, u_direction_[i]);
     path.reference = reference;
+    path.history.scatter_in_medium();
     return bounce(i, step, {position, direction}, phase.value(ray.direction, direction), false, kMaxSurvivalInMedium);
   }
 
@@ -168,7 +171,9 @@ class VolumePathGroup {
       if (const std::optional<LightChoice> light = choose_light(i, step, vertex.emitter_reference())) {
         const Vec3f wi = vertex.frame.to_local(light->sample.wi);
         const BsdfValue scatter = vertex.bsdf->value(vertex.wo, wi);
-        add_light(i, *light, vertex.origin_towards(light->sample.wi), boundary.towards(light->sample.wi, vertex.point, path.medium),
+        add_light(i, *light,
+                  {vertex.origin_towards(light->sample.wi), boundary.towards(light->sample.wi, vertex.point, path.medium),
+                   path.history.layer_by_surface()},
                   scatter.f * std::fabs(wi.z), scatter.pdf);
       }
     }
@@ -181,6 +186,7 @@ class VolumePathGroup {
     const Vec3f direction = vertex.frame.to_world(scatter->wi);
     path.medium = boundary.towards(direction, vertex.point, path.medium);
     path.reference = vertex.emitter_reference();
+    path.history.scatter_at_surface(*scatter);
     return bounce(i, step, {vertex.origin_towards(direction), direction}, scatter->pdf, scatter->delta, kMaxSurvivalAtSurface);
   }
 
@@ -221,16 +227,16 @@ class VolumePathGroup {
       const float pdf = scene_.emitters().pdf(vertex.surface->emitter_index, path.reference, {vertex.point, seen, from_bounce});
       weight = power_heuristic(path.direction_pdf, pdf);
     }
-    path.result->radiance += path.throughput * emitted * weight;
+    path.result->add(path.throughput * emitted * weight, path.history.layer());
   }
 
   void add_environment(const VolumePath& path, Vec3f direction) const {
-    if (scene_.environment()) path.result->radiance += path.throughput * *scene_.environment();
+    if (scene_.environment()) path.result->add(path.throughput * *scene_.environment(), path.history.layer());
     const auto& [map, choice_probability] = scene_.environment_map();
     if (map == nullptr) return;
     const auto [radiance, pdf] = map->from(direction);
     const float weight = path.delta ? 1.0f : power_heuristic(path.direction_pdf, pdf * choice_probability);
-    path.result->radiance += path.throughput * radiance * weight;
+    path.result->add(path.throughput * radiance * weight, path.history.layer());
   }
 
   // Next-event estimation: one emitter, one point of it.
@@ -249,14 +255,20 @@ class VolumePathGroup {
     return LightChoice{*sample, choice->probability};
   }
 
+  // Where light is scattered into the path.
+  struct Arrival {
+    Vec3f origin;  // of the shadow ray
+    const HomogeneousMedium* medium;
+    LightLayer layer;
+  };
   // `scattered`: phase function, or BSDF times cosine, towards the light, sr^-1; `pdf`: of sampling it there, sr^-1.
-  void add_light(std::size_t i, const LightChoice& light, Vec3f origin, const HomogeneousMedium* medium, Rgb scattered, float pdf) {
+  void add_light(std::size_t i, const LightChoice& light, const Arrival& at, Rgb scattered, float pdf) {
     if (scattered.is_black()) return;
-    const std::optional<Ray> ray = shadow_ray(origin, light.sample);
+    const std::optional<Ray> ray = shadow_ray(at.origin, light.sample);
     if (!ray) return;
     const float weight = light.sample.delta ? 1.0f : power_heuristic(light.sample.pdf_solid_angle * light.probability, pdf);
     const Rgb arriving = scattered * light.sample.weight * (weight / light.probability);
-    shadow_rays_.add(*ray, medium, path_[i].throughput * arriving, *path_[i].result);
+    shadow_rays_.add(*ray, {path_[i].throughput * arriving, at.layer, at.medium, path_[i].result});
   }
 
   const Scene& scene_;
