@@ -30,7 +30,18 @@ TEST(MaterialNeeds, OfNormalMapsAreTangentsAndOfBumpMapsDerivativesToo) {
   const MaterialNeeds normals = needs({NormalMapDescription{1, 0}, DiffuseDescription{}});
   EXPECT_TRUE(normals.normal_maps && normals.tangents && normals.uvs);
   EXPECT_FALSE(normals.uv_derivatives || normals.anisotropic);
+  EXPECT_TRUE(needs({NormalMapDescription{1, 0, 1, true}, DiffuseDescription{}}).uv_derivatives);
   EXPECT_TRUE(needs({BumpMapDescription{1, 0, 1}, DiffuseDescription{}}).uv_derivatives);
+}
+
+TEST(MaterialNeeds, OfGltfAreVertexColorsWhereItShowsThem) {
+  GltfDescription d;
+  EXPECT_FALSE(needs({d}).vertex_colors || needs({d}).uvs);
+  d.vertex_colors = true;
+  EXPECT_TRUE(needs({d}).vertex_colors);
+  EXPECT_FALSE(needs({d}).uvs);
+  d.sheen_roughness_texture = 0;
+  EXPECT_TRUE(needs({d}).uvs);
 }
 
 TEST(MaterialNeeds, OfTwoRoughnessesAreTangents) {
