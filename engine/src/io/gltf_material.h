@@ -13,9 +13,9 @@ struct GltfMaterial {
   int index = 0;                        // into the scene's materials
   std::optional<Rgb> emitted_radiance;  // W m^-2 sr^-1; a light
   bool double_sided = false;
-  int uv_set = 0;                       // TEXCOORD_n that its textures ask for
-  int interior_medium = kNoMedium;      // of the volume that it bounds, on its back side: index into the scene's media
-  bool has_alpha = false;               // alphaMode is MASK or BLEND
+  int uv_set = 0;                   // TEXCOORD_n that its textures ask for
+  int interior_medium = kNoMedium;  // of the volume that it bounds, on its back side: index into the scene's media
+  bool has_alpha = false;           // alphaMode is MASK or BLEND
 };
 
 class GltfMaterials {

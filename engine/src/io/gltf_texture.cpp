@@ -56,8 +56,7 @@ void GltfTextures::read_sampler(const GltfObject& texture, BitmapDescription& bi
   if (!index) return;
   const GltfObject sampler = file_.at("samplers", *index);
   bitmap.wrap = read_wrap(sampler, "wrapS");
-  if (read_wrap(sampler, "wrapT") != bitmap.wrap)
-    warn_once(sampler.place() + ": wrapT differs from wrapS, which is used for both");
+  if (read_wrap(sampler, "wrapT") != bitmap.wrap) warn_once(sampler.place() + ": wrapT differs from wrapS, which is used for both");
   if (sampler.count("magFilter", 65535).value_or(0) == kNearest) bitmap.filter = TextureFilter::kNearest;
 }
 

@@ -93,8 +93,7 @@ auto with_image(const std::filesystem::path& file, const std::string& name, cons
 }  // namespace
 
 TextureImage read_image(const std::filesystem::path& file, const std::string& name, bool raw) {
-  return with_image(file, name,
-                    [&](ImageFile& image) { return read(image, channels_of(image.header(), name), name, !raw); });
+  return with_image(file, name, [&](ImageFile& image) { return read(image, channels_of(image.header(), name), name, !raw); });
 }
 
 std::optional<TextureImage> read_alpha(const std::filesystem::path& file, const std::string& name) {

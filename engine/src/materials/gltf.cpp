@@ -306,9 +306,9 @@ class TexturedGltf final : public TexturedMaterial {
 };
 
 bool varies(const GltfDescription& d) {
-  const int used[] = {d.base_color_texture,  d.metallic_roughness_texture, d.transmission_texture,
-                      d.specular_texture,    d.specular_color_texture,     d.clearcoat_texture,
-                      d.clearcoat_roughness_texture, d.sheen_color_texture, d.sheen_roughness_texture};
+  const int used[] = {d.base_color_texture,     d.metallic_roughness_texture, d.transmission_texture,        d.specular_texture,
+                      d.specular_color_texture, d.clearcoat_texture,          d.clearcoat_roughness_texture, d.sheen_color_texture,
+                      d.sheen_roughness_texture};
   return d.vertex_colors || std::any_of(std::begin(used), std::end(used), [](int texture) { return texture != kNoTexture; });
 }
 

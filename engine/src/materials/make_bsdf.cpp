@@ -32,7 +32,7 @@ class Maker {
   std::unique_ptr<Bsdf> operator()(const GltfDescription& d) { return make_gltf(d); }
   std::unique_ptr<Bsdf> operator()(const ThinDielectricDescription& d) { return make_thin_dielectric(d); }
   std::unique_ptr<Bsdf> operator()(const NullDescription&) { return make_null(); }
-  std::unique_ptr<Bsdf> operator()(const MaskDescription& d) { 
+  std::unique_ptr<Bsdf> operator()(const MaskDescription& d) {
     return make_mask(held("material", d.material), d.opacity.factor, d.cutoff);
   }
   std::unique_ptr<Bsdf> operator()(const BlendDescription& d) {

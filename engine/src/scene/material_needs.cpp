@@ -39,9 +39,9 @@ class Collector {
     needs_.tangents |= needs_.anisotropic;
   }
   void operator()(const GltfDescription& d) {
-    for (const int index : {d.base_color_texture, d.metallic_roughness_texture, d.transmission_texture, d.specular_texture,
-                            d.specular_color_texture, d.clearcoat_texture, d.clearcoat_roughness_texture, d.sheen_color_texture,
-                            d.sheen_roughness_texture}) {
+    for (const int index :
+         {d.base_color_texture, d.metallic_roughness_texture, d.transmission_texture, d.specular_texture, d.specular_color_texture,
+          d.clearcoat_texture, d.clearcoat_roughness_texture, d.sheen_color_texture, d.sheen_roughness_texture}) {
       texture(index);
     }
     needs_.vertex_colors |= d.vertex_colors;

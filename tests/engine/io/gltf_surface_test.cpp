@@ -1,5 +1,5 @@
-// glTF surfaces beyond factors and colours: volumes that absorb, alpha, normal maps, colours of vertices. Descriptions, and radiance
-// that is known in closed form, with must-fail twins: M1 of the accuracy catalogue for the volume.
+// glTF surfaces beyond factors and colours: volumes that absorb, alpha, normal maps, colours of vertices. Descriptions, and
+// radiance that is known in closed form, with must-fail twins: M1 of the accuracy catalogue for the volume.
 #include <cmath>
 #include <limits>
 
@@ -33,7 +33,8 @@ GltfBuilder& with_image(GltfBuilder& gltf, const std::string& uri) {
 }
 
 // Radiance at one point, seen from another.
-Measurement seen(SceneDescription scene, const std::array<double, 3>& from, const std::array<double, 3>& at, std::uint32_t spp = 64) {
+Measurement seen(SceneDescription scene, const std::array<double, 3>& from, const std::array<double, 3>& at,
+                 std::uint32_t spp = 64) {
   const SceneDescription look = testing::SceneBuilder().look(from, at).description();
   scene.camera = look.camera;
   scene.film = look.film;
@@ -84,9 +85,9 @@ TEST(GltfVolume, AbsorbsItsColourOverItsDistance) {
   EXPECT_EQ(scene.shapes[1].interior_medium, 0);
   EXPECT_EQ(scene.shapes[0].exterior_medium, kNoMedium);
   EXPECT_EQ(scene.media[0].albedo, Rgb{0});
-  EXPECT_FLOAT_EQ(scene.media[0].sigma_t.r, 0.052680258f);   // -ln 0.9 / 2 m
-  EXPECT_FLOAT_EQ(scene.media[0].sigma_t.g, 0.693147181f);   // -ln 0.25 / 2 m
-  EXPECT_FLOAT_EQ(scene.media[0].sigma_t.b, 6.907755279f);   // black: -ln 1e-6 / 2 m
+  EXPECT_FLOAT_EQ(scene.media[0].sigma_t.r, 0.052680258f);  // -ln 0.9 / 2 m
+  EXPECT_FLOAT_EQ(scene.media[0].sigma_t.g, 0.693147181f);  // -ln 0.25 / 2 m
+  EXPECT_FLOAT_EQ(scene.media[0].sigma_t.b, 6.907755279f);  // black: -ln 1e-6 / 2 m
   EXPECT_FALSE(warns(scene, "attenuation"));
   // 1 m leaves a = 1/2. Straight on, before an even sky and with all reflections between the faces: R + (1 - R)^2 a / (1 - R a).
   const Measurement m = seen(scene, {0, 0, 5}, {0, 0, 0}, 16384);
@@ -97,9 +98,9 @@ TEST(GltfVolume, AbsorbsItsColourOverItsDistance) {
 
 TEST(GltfVolume, WithoutAttenuationHasNoMedium) {
   for (const char* volume :
-       {R"("attenuationDistance": 2, "attenuationColor": [0.9, 0.25, 0])",                          // no thickness: a pane
-        R"("thicknessFactor": 1, "attenuationColor": [0.9, 0.25, 0])",                              // infinitely far
-        R"("thicknessFactor": 1, "attenuationDistance": 2, "attenuationColor": [1, 1, 1])"}) {      // leaves everything
+       {R"("attenuationDistance": 2, "attenuationColor": [0.9, 0.25, 0])",                      // no thickness: a pane
+        R"("thicknessFactor": 1, "attenuationColor": [0.9, 0.25, 0])",                          // infinitely far
+        R"("thicknessFactor": 1, "attenuationDistance": 2, "attenuationColor": [1, 1, 1])"}) {  // leaves everything
     const SceneDescription scene = glass_block(volume);
     EXPECT_TRUE(scene.media.empty()) << volume;
     EXPECT_EQ(scene.shapes[0].interior_medium, kNoMedium) << volume;
@@ -126,12 +127,13 @@ TEST(GltfAlpha, BlendTakesFactorAndTexture) {
   const auto& alpha = std::get<BitmapDescription>(scene.textures.at(static_cast<std::size_t>(mask->opacity.texture)));
   EXPECT_FLOAT_EQ(alpha.image->texel(0, 0).g, 0.2f);  // as stored, no sRGB
   EXPECT_FLOAT_EQ(alpha.image->texel(1, 0).g, 1);
-  const auto& color = std::get<BitmapDescription>(
-      scene.textures.at(static_cast<std::size_t>(held<GltfDescription>(scene)->base_color_texture)));
+  const auto& color =
+      std::get<BitmapDescription>(scene.textures.at(static_cast<std::size_t>(held<GltfDescription>(scene)->base_color_texture)));
   EXPECT_EQ(color.image->texel(0, 0), (Rgb{1, 0, 0}));
   EXPECT_TRUE(scene.warnings.size() == 2) << "camera and light";
   // A black surface before a sky of radiance 1.
-  const Measurement left = seen(scene, {0.25, 0.5, 3}, {0.25, 0.5, 0}, 4096), right = seen(scene, {0.75, 0.5, 3}, {0.75, 0.5, 0}, 4096);
+  const Measurement left = seen(scene, {0.25, 0.5, 3}, {0.25, 0.5, 0}, 4096),
+                    right = seen(scene, {0.75, 0.5, 3}, {0.75, 0.5, 0}, 4096);
   EXPECT_LE(left.z(0.9), 3.3) << left.mean << " +- " << left.standard_error;
   EXPECT_LE(right.z(0.5), 3.3) << right.mean << " +- " << right.standard_error;
   EXPECT_GT(left.z(1 - 0.5 * std::pow((0.2 + 0.055) / 1.055, 2.4)), 3.3) << "alpha decoded as a colour";
@@ -242,8 +244,7 @@ TEST(GltfNormalMap, ScaleActsOnXAndY) {
 
 TEST(GltfVertexColors, MultiplyTheBaseColour) {
   // 0.2 at x = 0, 0.8 at x = 1; values beyond [0, 1] are clamped.
-  const SceneDescription scene =
-      lit_square(kUpright, "", R"({"mesh": 0})", {-3, 0.2f, 0, 7, 0.8f, 0, 7, 0.8f, 0, -3, 0.2f, 0});
+  const SceneDescription scene = lit_square(kUpright, "", R"({"mesh": 0})", {-3, 0.2f, 0, 7, 0.8f, 0, 7, 0.8f, 0, -3, 0.2f, 0});
   EXPECT_TRUE(held<GltfDescription>(scene)->vertex_colors);
   const auto& mesh = std::get<MeshDescription>(scene.shapes.at(0).geometry);
   ASSERT_EQ(mesh.colors.size(), 4u);
@@ -287,7 +288,8 @@ TEST(BadGltfSurface, MaterialsOutOfRangeAreErrors) {
     return R"({"extensions": {"KHR_materials_transmission": {"transmissionFactor": 1}, "KHR_materials_volume": {"thicknessFactor": 1, )" +
            members + "}}}";
   };
-  expect_material_error(volume(R"("attenuationDistance": 0)"), "materials[0].extensions.KHR_materials_volume.attenuationDistance: is 0");
+  expect_material_error(volume(R"("attenuationDistance": 0)"),
+                        "materials[0].extensions.KHR_materials_volume.attenuationDistance: is 0");
   expect_material_error(volume(R"("attenuationDistance": 1e-300, "attenuationColor": [1, 0.5, 1])"), "the absorption is infinite");
   expect_material_error(volume(R"("attenuationDistance": 1, "attenuationColor": [1, 1.5, 1])"), "attenuationColor[1]: is 1.5");
   expect_material_error(R"({"alphaMode": "MASK", "alphaCutoff": -1})", "materials[0].alphaCutoff: is -1");
@@ -299,7 +301,8 @@ TEST(BadGltfSurface, MaterialsOutOfRangeAreErrors) {
 }
 
 template <typename Component>
-void expect_color_error(const std::vector<Component>& colors, int components, const std::string& part, const std::string& extra = "") {
+void expect_color_error(const std::vector<Component>& colors, int components, const std::string& part,
+                        const std::string& extra = "") {
   const SceneFolder folder;
   GltfBuilder gltf;
   gltf.accessor<float>({0, 0, 0, 1, 0, 0, 0, 1, 0}, 3);

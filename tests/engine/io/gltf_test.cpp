@@ -335,8 +335,8 @@ TEST(Gltf, WhatIsNotReadIsAWarning) {
   gltf.add("nodes", R"({"mesh": 0, "scale": [0, 0, 0]})").add("animations", "{}");
   gltf.more(R"(, "extensionsUsed": ["KHR_materials_unlit", "VENDOR_sparkle"])");
   const SceneDescription scene = gltf.read(folder);
-  for (const char* text : {"VENDOR_sparkle", "KHR_materials_unlit: the surface", "scaled to nothing",
-                           "animations", "morph targets"}) {
+  for (const char* text :
+       {"VENDOR_sparkle", "KHR_materials_unlit: the surface", "scaled to nothing", "animations", "morph targets"}) {
     EXPECT_TRUE(warns(scene, text)) << text;
   }
 }
