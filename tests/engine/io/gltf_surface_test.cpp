@@ -41,6 +41,25 @@ Measurement seen(SceneDescription scene, const std::array<double, 3>& from, cons
   return measure(scene, spp);
 }
 
+// Unit square in z = 0 that faces +z, with those texture coordinates, under a point light 3 m above and 4 m before its centre.
+SceneDescription lit_square(const std::vector<float>& uvs, const std::string& material, const std::string& nodes = R"({"mesh": 0})",
+                            const std::vector<float>& colors = {}) {
+  const SceneFolder folder;
+  GltfBuilder gltf;
+  gltf.accessor<float>({0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0}, 3);
+  gltf.accessor<float>({0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1}, 3);
+  gltf.accessor(uvs, 2);
+  gltf.accessor<std::uint16_t>({0, 1, 2, 0, 2, 3}, 1);
+  if (!colors.empty()) gltf.accessor(colors, 3);
+  gltf.add("meshes", std::string(R"({"primitives": [{"attributes": {"POSITION": 0, "NORMAL": 1, "TEXCOORD_0": 2)") +
+                         (colors.empty() ? "" : ", \"COLOR_0\": 4") + R"(}, "indices": 3, "material": 0}]})");
+  gltf.add("nodes", nodes);
+  gltf.add("nodes", R"({"translation": [0.5, 3.5, 4], "extensions": {"KHR_lights_punctual": {"light": 0}}})");
+  gltf.more(R"(, "extensions": {"KHR_lights_punctual": {"lights": [{"type": "point", "intensity": 100}]}})");
+  with_image(gltf, kUpPng).add("materials", std::string("{") + kLambert + "}" + material + "}");
+  return gltf.read(folder);
+}
+
 // The innermost material of a shape, and those around it.
 template <typename Description>
 const Description* held(const SceneDescription& scene, std::size_t shape = 0) {
@@ -170,6 +189,14 @@ TEST(GltfAlpha, LightThatIsTransparentSaysSo) {
                     "the light shines in full"));
 }
 
+// Shadow rays take a mask as opaque, and no path meets a light that is a point.
+TEST(GltfAlpha, PunctualLightsThatItStopsAreAWarning) {
+  const char* text = "punctual lights does not pass";
+  EXPECT_TRUE(warns(lit_square({0, 1, 1, 1, 1, 0, 0, 0}, R"(, "alphaMode": "MASK", "alphaCutoff": 2)"), text));
+  EXPECT_FALSE(warns(lit_square({0, 1, 1, 1, 1, 0, 0, 0}, ""), text));
+  EXPECT_FALSE(warns(black_with_alpha(R"(, "alphaMode": "BLEND")", "0.5", kAlphaPng), text));
+}
+
 TEST(GltfAlpha, SpecularAndSheenRoughnessAreAlphaChannels) {
   const SceneFolder folder;
   GltfBuilder gltf;
@@ -187,25 +214,6 @@ TEST(GltfAlpha, SpecularAndSheenRoughnessAreAlphaChannels) {
 }
 
 // ---------------------------------------------------------------- normal maps
-
-// Unit square in z = 0 that faces +z, with those texture coordinates, under a point light 3 m above and 4 m before its centre.
-SceneDescription lit_square(const std::vector<float>& uvs, const std::string& material, const std::string& nodes = R"({"mesh": 0})",
-                            const std::vector<float>& colors = {}) {
-  const SceneFolder folder;
-  GltfBuilder gltf;
-  gltf.accessor<float>({0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0}, 3);
-  gltf.accessor<float>({0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1}, 3);
-  gltf.accessor(uvs, 2);
-  gltf.accessor<std::uint16_t>({0, 1, 2, 0, 2, 3}, 1);
-  if (!colors.empty()) gltf.accessor(colors, 3);
-  gltf.add("meshes", std::string(R"({"primitives": [{"attributes": {"POSITION": 0, "NORMAL": 1, "TEXCOORD_0": 2)") +
-                         (colors.empty() ? "" : ", \"COLOR_0\": 4") + R"(}, "indices": 3, "material": 0}]})");
-  gltf.add("nodes", nodes);
-  gltf.add("nodes", R"({"translation": [0.5, 3.5, 4], "extensions": {"KHR_lights_punctual": {"light": 0}}})");
-  gltf.more(R"(, "extensions": {"KHR_lights_punctual": {"lights": [{"type": "point", "intensity": 100}]}})");
-  with_image(gltf, kUpPng).add("materials", std::string("{") + kLambert + "}" + material + "}");
-  return gltf.read(folder);
-}
 
 const std::vector<float> kUpright{0, 1, 1, 1, 1, 0, 0, 0}, kMirrored{1, 1, 0, 1, 0, 0, 1, 0}, kUpsideDown{0, 0, 1, 0, 1, 1, 0, 1};
 constexpr double kPerCosine = 100 / 25.0 / 3.14159265358979;  // radiance of a white surface, over the cosine at the light
