@@ -67,7 +67,7 @@ void GltfTextures::warn_once(const std::string& warning) {
 std::shared_ptr<const TextureImage> GltfTextures::image(std::size_t index, GltfChannels channels) {
   if (const auto known = images_.find({index, channels}); known != images_.end()) return known->second;
   const GltfObject object = file_.at("images", index);
-  const std::shared_ptr<const TextureImage> image = images_[{index, channels}] = decoded(object, channels);
+  std::shared_ptr<const TextureImage> image = images_[{index, channels}] = decoded(object, channels);
   if (image == nullptr) return image;
   pixels_ += static_cast<std::size_t>(image->width()) * static_cast<std::size_t>(image->height());
   if (pixels_ > kMaxTexturePixels) {
