@@ -14,6 +14,7 @@ DiscreteDistribution shares(const std::vector<double>& powers) {
   double total = 0;
   for (const double power : powers) total += power;
   std::vector<double> weights;
+  weights.reserve(powers.size());
   for (const double power : powers) weights.push_back(0.5 / count + 0.5 * (total > 0 ? power / total : 1 / count));
   return DiscreteDistribution(weights);
 }

@@ -1,5 +1,7 @@
 #include "io/gltf_primitive.h"
 
+#include <algorithm>
+#include <cmath>
 #include <numeric>
 
 #include "io/gltf_accessor.h"
@@ -59,6 +61,30 @@ class PrimitiveReader {
     return values;
   }
 
+  // COLOR_0 without alpha; `has_alpha` is set where that is below 1. Clamped as the specification says.   [glTF, 3.7.2.1]
+  std::vector<Rgb> colors(bool& has_alpha) {
+    const auto index = accessor("COLOR_0");
+    if (!index) return {};
+    const GltfObject object = file_.at("accessors", *index);
+    const std::string type = object.text("type", "");
+    if (type != "VEC3" && type != "VEC4") object.fail("type", "expected \"VEC3\" or \"VEC4\"");
+    const bool is_float = object.required_count("componentType", 65535) == 5126;
+    if (!is_float && !object.boolean("normalized", false)) object.fail("normalized", "expected true for colours as integers");
+    const std::size_t components = type == "VEC3" ? 3 : 4;
+    const std::vector<float> values = attribute("COLOR_0", components);
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      if (std::isnan(values[i]))
+        attributes_.fail("COLOR_0", "whose vertex " + std::to_string(i / components) + " has a value that is not a number");
+    }
+    std::vector<Rgb> result(values.size() / components);
+    for (std::size_t i = 0; i < result.size(); ++i) {
+      const float* v = values.data() + i * components;
+      result[i] = {std::clamp(v[0], 0.0f, 1.0f), std::clamp(v[1], 0.0f, 1.0f), std::clamp(v[2], 0.0f, 1.0f)};
+      has_alpha |= components == 4 && v[3] < 1;
+    }
+    return result;
+  }
+
   std::vector<std::uint32_t> indices() {
     const auto index = primitive_.index("indices", "accessors", file_.size("accessors"));
     if (index) {
@@ -101,12 +127,12 @@ std::optional<GltfPrimitive> read_gltf_primitive(GltfFile& file, const GltfObjec
     return std::nullopt;
   }
   if (primitive.has("targets")) warnings.push_back(primitive.place() + ": morph targets are not read; the mesh stands as it is");
-  if (reader.accessor("COLOR_0")) warnings.push_back(primitive.place() + ": COLOR_0: colours of vertices are not read");
   GltfPrimitive result;
   result.mesh.name = primitive.place();
   result.mesh.positions = as_vectors(reader.attribute("POSITION", 3));
   result.mesh.normals = as_vectors(reader.attribute("NORMAL", 3));
   result.mesh.uvs = as_pairs(reader.attribute("TEXCOORD_" + std::to_string(uv_set), 2));
+  result.mesh.colors = reader.colors(result.has_alpha);
   result.face_normals = result.mesh.normals.empty();
   const std::vector<std::uint32_t> indices = reader.indices();
   if (mode == kTriangles && indices.size() % 3 != 0)

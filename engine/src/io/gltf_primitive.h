@@ -16,6 +16,7 @@ struct GltfMeshBudget {
 struct GltfPrimitive {
   RawMesh mesh;
   bool face_normals = false;  // the file has no normals: flat, as glTF wants it
+  bool has_alpha = false;     // some colour of a vertex is not opaque
 };
 
 // Triangles, strips and fans. `uv_set`: which TEXCOORD becomes the texture coordinates, if the mesh has it. Nothing, with a line in

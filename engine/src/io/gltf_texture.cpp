@@ -29,13 +29,13 @@ TextureWrap read_wrap(const GltfObject& sampler, const char* name) {
 
 }  // namespace
 
-std::optional<GltfTextures::Use> GltfTextures::read(const GltfObject& object, const char* name, bool raw) {
+std::optional<GltfTextures::Use> GltfTextures::read(const GltfObject& object, const char* name, GltfChannels channels) {
   const std::optional<GltfObject> info = object.object(name);
   if (!info) return std::nullopt;
   const GltfObject texture = file_.at("textures", info->required_index("index", "textures", file_.size("textures")));
   const auto source = texture.index("source", "images", file_.size("images"));
   if (!source) {
-    warnings_.push_back(texture.place() + ": has no image that is read (PNG or JPEG); the texture is left out");
+    warn_once(texture.place() + ": has no image that is read (PNG or JPEG); the texture is left out");
     return std::nullopt;
   }
   BitmapDescription bitmap;
@@ -45,7 +45,8 @@ std::optional<GltfTextures::Use> GltfTextures::read(const GltfObject& object, co
     uv_set = transform->count("texCoord", 7).value_or(uv_set);
   }
   read_sampler(texture, bitmap);
-  bitmap.image = image(*source, raw);
+  bitmap.image = image(*source, channels);
+  if (bitmap.image == nullptr) return std::nullopt;
   textures_.emplace_back(std::move(bitmap));
   return Use{static_cast<int>(textures_.size()) - 1, static_cast<int>(uv_set)};
 }
@@ -55,34 +56,47 @@ void GltfTextures::read_sampler(const GltfObject& texture, BitmapDescription& bi
   if (!index) return;
   const GltfObject sampler = file_.at("samplers", *index);
   bitmap.wrap = read_wrap(sampler, "wrapS");
-  if (read_wrap(sampler, "wrapT") != bitmap.wrap)
-    warnings_.push_back(sampler.place() + ": wrapT differs from wrapS, which is used for both");
+  if (read_wrap(sampler, "wrapT") != bitmap.wrap) warn_once(sampler.place() + ": wrapT differs from wrapS, which is used for both");
   if (sampler.count("magFilter", 65535).value_or(0) == kNearest) bitmap.filter = TextureFilter::kNearest;
 }
 
-std::shared_ptr<const TextureImage> GltfTextures::image(std::size_t index, bool raw) {
-  std::shared_ptr<const TextureImage>& known = images_[{index, raw}];
-  if (known) return known;
-  const GltfObject image = file_.at("images", index);
+void GltfTextures::warn_once(const std::string& warning) {
+  if (warned_.insert(warning).second) warnings_.push_back(warning);
+}
+
+std::shared_ptr<const TextureImage> GltfTextures::image(std::size_t index, GltfChannels channels) {
+  if (const auto known = images_.find({index, channels}); known != images_.end()) return known->second;
+  const GltfObject object = file_.at("images", index);
+  std::shared_ptr<const TextureImage> image = images_[{index, channels}] = decoded(object, channels);
+  if (image == nullptr) return image;
+  pixels_ += static_cast<std::size_t>(image->width()) * static_cast<std::size_t>(image->height());
+  if (pixels_ > kMaxTexturePixels) {
+    throw SceneError(object.place(), "with this image the textures of the file have " + std::to_string(pixels_) +
+                                         " pixels, expected at most " + std::to_string(kMaxTexturePixels));
+  }
+  return image;
+}
+
+std::shared_ptr<const TextureImage> GltfTextures::decoded(const GltfObject& image, GltfChannels channels) {
+  const auto read = [&](const std::filesystem::path& path, const std::string& name) -> std::shared_ptr<const TextureImage> {
+    if (channels != GltfChannels::kAlpha)
+      return std::make_shared<const TextureImage>(read_image(path, name, channels == GltfChannels::kNumbers));
+    std::optional<TextureImage> alpha = read_alpha(path, name);
+    return alpha ? std::make_shared<const TextureImage>(std::move(*alpha)) : nullptr;
+  };
   if (image.has("uri") == image.has("bufferView"))
     throw SceneError(image.place(), "has both or neither of uri and bufferView, expected one of them");
   if (image.has("bufferView")) {
     const MemoryFile memory(file_.buffer_view(image.required_index("bufferView", "bufferViews", file_.size("bufferViews"))));
-    known = std::make_shared<const TextureImage>(read_image(memory.path(), image.place(), raw));
-  } else if (const std::string uri = image.text("uri", ""); is_data_uri(uri)) {
+    return read(memory.path(), image.place());
+  }
+  const std::string uri = image.text("uri", "");
+  if (is_data_uri(uri)) {
     const MemoryFile memory(data_uri_bytes(uri, image.place() + ".uri"));
-    known = std::make_shared<const TextureImage>(read_image(memory.path(), image.place(), raw));
-  } else {
-    const std::filesystem::path file = file_.find(uri, image.place() + ".uri");
-    known =
-        std::make_shared<const TextureImage>(read_image(file, image.place() + " (" + file_of_uri(uri, image.place()) + ")", raw));
+    return read(memory.path(), image.place());
   }
-  pixels_ += static_cast<std::size_t>(known->width()) * static_cast<std::size_t>(known->height());
-  if (pixels_ > kMaxTexturePixels) {
-    throw SceneError(image.place(), "with this image the textures of the file have " + std::to_string(pixels_) +
-                                        " pixels, expected at most " + std::to_string(kMaxTexturePixels));
-  }
-  return known;
+  const std::filesystem::path file = file_.find(uri, image.place() + ".uri");
+  return read(file, image.place() + " (" + file_of_uri(uri, image.place()) + ")");
 }
 
 Rgb GltfTextures::mean(int texture) const {

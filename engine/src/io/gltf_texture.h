@@ -11,6 +11,9 @@
 
 namespace fluxfarm {
 
+// What of an image a texture shows: sRGB colours, three numbers, or its alpha channel as a grey.
+enum class GltfChannels { kColors, kNumbers, kAlpha };
+
 class GltfTextures {
  public:
   // Appends to `textures` and `warnings`. Everything must outlive this.
@@ -21,21 +24,24 @@ class GltfTextures {
     int texture;     // index into the scene's textures
     int uv_set = 0;  // TEXCOORD_n of the mesh
   };
-  // What the member `name` of a material shows; nothing if it is absent, or its texture has no image that is read, which is a
-  // warning. `raw`: numbers and no sRGB colours. Throws SceneError.
-  std::optional<Use> read(const GltfObject& object, const char* name, bool raw);
+  // What the member `name` of a material shows; nothing if it is absent, its image has no alpha channel that is asked for, or its
+  // texture no image that is read, which is a warning. Throws SceneError.
+  std::optional<Use> read(const GltfObject& object, const char* name, GltfChannels channels);
 
   // Mean of the image of a texture that read() gave.
   Rgb mean(int texture) const;
 
  private:
-  std::shared_ptr<const TextureImage> image(std::size_t index, bool raw);
+  std::shared_ptr<const TextureImage> image(std::size_t index, GltfChannels channels);
+  std::shared_ptr<const TextureImage> decoded(const GltfObject& image, GltfChannels channels);
+  void warn_once(const std::string& warning);
   void read_sampler(const GltfObject& texture, BitmapDescription& bitmap);
 
   GltfFile& file_;
   std::vector<TextureDescription>& textures_;
   std::vector<std::string>& warnings_;
-  std::map<std::pair<std::size_t, bool>, std::shared_ptr<const TextureImage>> images_;
+  std::map<std::pair<std::size_t, GltfChannels>, std::shared_ptr<const TextureImage>> images_;  // null: has no alpha channel
+  std::set<std::string> warned_;  // a texture may be read twice, for colour and alpha
   std::size_t pixels_ = 0;
 };
 

@@ -42,7 +42,7 @@ class MeshPlacer {
  private:
   struct Primitive {
     GltfObject object;
-    const GltfMaterial* material;
+    GltfMaterial material;
     std::shared_ptr<const MeshDescription> shared;  // made for the first instance
     bool is_drawn = true;
   };
@@ -52,8 +52,8 @@ class MeshPlacer {
     if (!primitives.empty()) return primitives;
     const GltfObject object = file_.at("meshes", mesh);
     for (GltfObject& primitive : object.objects("primitives")) {
-      const GltfMaterial& material = materials_.of_primitive(primitive);
-      primitives.push_back({std::move(primitive), &material, nullptr});
+      const GltfMaterial material = materials_.of_primitive(primitive);
+      primitives.push_back({std::move(primitive), material, nullptr});
     }
     if (primitives.empty()) object.fail("primitives", "expected at least one");
     return primitives;
@@ -71,7 +71,7 @@ class MeshPlacer {
     for (Primitive& primitive : primitives) {
       if (!primitive.is_drawn) continue;
       // A light has a mesh of its own, as has what is squashed flat: neither could be an instance.
-      const bool instance = is_shared && !primitive.material->emitted_radiance && is_invertible(placed.to_world);
+      const bool instance = is_shared && !primitive.material.emitted_radiance && is_invertible(placed.to_world);
       place(placed, primitive, instance);
     }
   }
@@ -79,9 +79,10 @@ class MeshPlacer {
   void place(const GltfPlaced& placed, Primitive& primitive, bool instance) {
     ShapeDescription shape;
     shape.name = placed.name;
-    shape.material = primitive.material->index;
-    shape.emitted_radiance = primitive.material->emitted_radiance;
-    shape.emits_on_both_sides = primitive.material->double_sided;
+    shape.material = primitive.material.index;
+    shape.emitted_radiance = primitive.material.emitted_radiance;
+    shape.emits_on_both_sides = primitive.material.double_sided;
+    shape.interior_medium = primitive.material.interior_medium;
     if (instance) {
       if (!primitive.shared) {
         std::optional<MeshDescription> mesh = read(primitive, Transform());
@@ -100,9 +101,11 @@ class MeshPlacer {
   // Nothing for what is not drawn, which is said once.
   std::optional<MeshDescription> read(Primitive& primitive, const Transform& to_world) {
     std::optional<GltfPrimitive> raw =
-        read_gltf_primitive(file_, primitive.object, primitive.material->uv_set, budget_, scene_.warnings);
+        read_gltf_primitive(file_, primitive.object, primitive.material.uv_set, budget_, scene_.warnings);
     primitive.is_drawn = raw.has_value();
     if (!raw) return std::nullopt;
+    if (raw->has_alpha && primitive.material.has_alpha)
+      scene_.warnings.push_back(primitive.object.place() + ": COLOR_0: alpha of vertices is not read");
     // Where the corners decide which side is the front, a mirroring node turns their order around.            [glTF, 3.7.4]
     if (raw->face_normals && to_world.determinant() < 0) {
       for (std::size_t i = 0; i + 2 < raw->mesh.indices.size(); i += 3)
@@ -125,9 +128,13 @@ class MeshPlacer {
 GltfNodes read_into(GltfFile& file, const Transform& to_world, SceneDescription& scene) {
   GltfNodes nodes = read_gltf_nodes(file, to_world, scene.warnings);
   GltfTextures textures(file, scene.textures, scene.warnings);
-  GltfMaterials materials(file, textures, scene.materials, scene.warnings);
+  GltfMaterials materials(file, textures, scene);
   MeshPlacer(file, materials, scene).place(nodes.meshes);
   for (const GltfPlaced& light : nodes.lights) scene.emitters.push_back(read_gltf_light(file, light));
+  const bool masks = std::any_of(scene.materials.begin(), scene.materials.end(),
+                                 [](const MaterialDescription& m) { return std::holds_alternative<MaskDescription>(m); });
+  if (masks && !nodes.lights.empty())
+    scene.warnings.push_back(file.name() + ": alphaMode: the light of punctual lights does not pass what is transparent by alpha");
   if (file.size("animations") > 0) scene.warnings.push_back(file.name() + ": animations are not read; nothing moves");
   return nodes;
 }

@@ -50,27 +50,26 @@ void check_reflectances(const std::vector<float>& values, std::size_t width, std
                              number_text(static_cast<double>(*wrong)) + ", expected numbers in [0, 1]: a reflectance");
 }
 
-TextureImage read(ImageFile& file, const std::string& name, bool raw) {
+// These channels of the image. `srgb`: integers are encoded so.
+TextureImage read(ImageFile& file, Channels channels, const std::string& name, bool srgb) {
   const ImageHeader& header = file.header();
-  check_header(header, name);
-  const Channels channels = channels_of(header, name);
   const int width = static_cast<int>(header.width), height = static_cast<int>(header.height);
   const std::size_t values = static_cast<std::size_t>(header.width * header.height) * static_cast<std::size_t>(channels.count);
   if (header.sample == ImageSample::kUint8) {
     std::vector<std::uint8_t> texels(values);
     file.read(channels.first, channels.count, texels.data());
-    return {width, height, channels.count, std::move(texels), !raw};
+    return {width, height, channels.count, std::move(texels), srgb};
   }
   std::vector<float> texels(values);
   file.read(channels.first, channels.count, texels.data());
   check_reflectances(texels, static_cast<std::size_t>(width), static_cast<std::size_t>(channels.count), name);
-  if (header.sample == ImageSample::kUint16 && !raw) std::transform(texels.begin(), texels.end(), texels.begin(), srgb_to_linear);
+  if (header.sample == ImageSample::kUint16 && srgb) std::transform(texels.begin(), texels.end(), texels.begin(), srgb_to_linear);
   return {width, height, channels.count, std::move(texels)};
 }
 
-}  // namespace
-
-TextureImage read_image(const std::filesystem::path& file, const std::string& name, bool raw) {
+// What `use` makes of the image in the file, whose size was checked.
+template <typename Use>
+auto with_image(const std::filesystem::path& file, const std::string& name, const Use& use) {
   const std::optional<std::string> format = image_format_of(file);
   if (!format) throw SceneError(name, "is no image that can be read, expected EXR, HDR, PNG or JPEG");
   // Its decoder takes memory for the whole image before it tells the size.
@@ -80,7 +79,8 @@ TextureImage read_image(const std::filesystem::path& file, const std::string& na
   }
   try {
     const std::unique_ptr<ImageFile> image = open_image(file, *format);
-    return read(*image, name, raw);
+    check_header(image->header(), name);
+    return use(*image);
   } catch (const Error&) {
     throw;
   } catch (const std::bad_alloc&) {
@@ -88,6 +88,21 @@ TextureImage read_image(const std::filesystem::path& file, const std::string& na
   } catch (const std::exception& error) {
     throw SceneError(name, "is a damaged " + *format + " image: " + printable(error.what()));
   }
+}
+
+}  // namespace
+
+TextureImage read_image(const std::filesystem::path& file, const std::string& name, bool raw) {
+  return with_image(file, name, [&](ImageFile& image) { return read(image, channels_of(image.header(), name), name, !raw); });
+}
+
+std::optional<TextureImage> read_alpha(const std::filesystem::path& file, const std::string& name) {
+  return with_image(file, name, [&](ImageFile& image) -> std::optional<TextureImage> {
+    const std::vector<std::string>& names = image.header().channels;
+    const auto alpha = std::find(names.begin(), names.end(), "A");
+    if (alpha == names.end()) return std::nullopt;
+    return read(image, {static_cast<int>(alpha - names.begin()), 1}, name, false);
+  });
 }
 
 }  // namespace fluxfarm

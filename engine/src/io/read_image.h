@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 
 #include "textures/texture_image.h"
@@ -15,5 +16,8 @@ namespace fluxfarm {
 // kMaxImagePixels; checked before memory is taken) or other channels, and for texels that are no reflectance: outside [0, 1] or not
 // a number. ResourceError if libfluxfarm-images.so is not beside the engine.
 TextureImage read_image(const std::filesystem::path& file, const std::string& name, bool raw);
+
+// The alpha channel of such an image as a grey one, as stored; nothing if the image has none. Throws as read_image().
+std::optional<TextureImage> read_alpha(const std::filesystem::path& file, const std::string& name);
 
 }  // namespace fluxfarm

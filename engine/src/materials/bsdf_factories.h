@@ -23,7 +23,7 @@ std::unique_ptr<Bsdf> make_thin_dielectric(const ThinDielectricDescription&);
 std::unique_ptr<Bsdf> make_null();
 
 // These borrow what they hold: it must outlive the result.
-std::unique_ptr<Bsdf> make_mask(const Bsdf& covered, float opacity);
+std::unique_ptr<Bsdf> make_mask(const Bsdf& covered, float opacity, std::optional<float> cutoff);
 std::unique_ptr<Bsdf> make_blend(const Bsdf& first, const Bsdf& second, float weight);
 
 // Borrows both sides: they must outlive the result and must not transmit.

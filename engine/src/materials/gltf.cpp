@@ -265,25 +265,30 @@ class TexturedGltf final : public TexturedMaterial {
         base_color_(texture_of(textures, d.base_color_texture)),
         metallic_roughness_(texture_of(textures, d.metallic_roughness_texture)),
         transmission_(texture_of(textures, d.transmission_texture)),
+        specular_(texture_of(textures, d.specular_texture)),
         specular_color_(texture_of(textures, d.specular_color_texture)),
         clearcoat_(texture_of(textures, d.clearcoat_texture)),
         clearcoat_roughness_(texture_of(textures, d.clearcoat_roughness_texture)),
-        sheen_color_(texture_of(textures, d.sheen_color_texture)) {}
+        sheen_color_(texture_of(textures, d.sheen_color_texture)),
+        sheen_roughness_(texture_of(textures, d.sheen_roughness_texture)) {}
 
   const Bsdf& add_to(BsdfSpace& space, const MaterialPoint& point) const override {
     const TexturePoint& at = point.texture;
     GltfDescription d = d_;
     d.base_color = colour_at(d.base_color, base_color_, at);
+    if (d.vertex_colors) d.base_color *= at.vertex_color;
     if (metallic_roughness_ != nullptr) {
       const Rgb texel = metallic_roughness_->value(at);
       d.roughness *= texel.g;
       d.metallic *= texel.b;
     }
     if (transmission_ != nullptr) d.transmission *= transmission_->value(at).r;
+    if (specular_ != nullptr) d.specular *= specular_->value(at).r;
     d.specular_color = colour_at(d.specular_color, specular_color_, at);
     if (clearcoat_ != nullptr) d.clearcoat *= clearcoat_->value(at).r;
     if (clearcoat_roughness_ != nullptr) d.clearcoat_roughness *= clearcoat_roughness_->value(at).g;
     d.sheen_color = colour_at(d.sheen_color, sheen_color_, at);
+    if (sheen_roughness_ != nullptr) d.sheen_roughness *= sheen_roughness_->value(at).r;
     return space.make<Gltf>(d);
   }
 
@@ -292,16 +297,19 @@ class TexturedGltf final : public TexturedMaterial {
   const Texture* base_color_;
   const Texture* metallic_roughness_;
   const Texture* transmission_;
+  const Texture* specular_;
   const Texture* specular_color_;
   const Texture* clearcoat_;
   const Texture* clearcoat_roughness_;
   const Texture* sheen_color_;
+  const Texture* sheen_roughness_;
 };
 
-bool has_texture(const GltfDescription& d) {
-  const int used[] = {d.base_color_texture, d.metallic_roughness_texture,  d.transmission_texture, d.specular_color_texture,
-                      d.clearcoat_texture,  d.clearcoat_roughness_texture, d.sheen_color_texture};
-  return std::any_of(std::begin(used), std::end(used), [](int texture) { return texture != kNoTexture; });
+bool varies(const GltfDescription& d) {
+  const int used[] = {d.base_color_texture,     d.metallic_roughness_texture, d.transmission_texture,        d.specular_texture,
+                      d.specular_color_texture, d.clearcoat_texture,          d.clearcoat_roughness_texture, d.sheen_color_texture,
+                      d.sheen_roughness_texture};
+  return d.vertex_colors || std::any_of(std::begin(used), std::end(used), [](int texture) { return texture != kNoTexture; });
 }
 
 }  // namespace
@@ -309,7 +317,7 @@ bool has_texture(const GltfDescription& d) {
 std::unique_ptr<Bsdf> make_gltf(const GltfDescription& d) { return std::make_unique<Gltf>(d); }
 
 std::unique_ptr<TexturedMaterial> make_textured_gltf(const GltfDescription& d, const Textures& textures) {
-  return has_texture(d) ? std::make_unique<TexturedGltf>(d, textures) : nullptr;
+  return varies(d) ? std::make_unique<TexturedGltf>(d, textures) : nullptr;
 }
 
 }  // namespace fluxfarm

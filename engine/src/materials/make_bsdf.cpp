@@ -32,7 +32,9 @@ class Maker {
   std::unique_ptr<Bsdf> operator()(const GltfDescription& d) { return make_gltf(d); }
   std::unique_ptr<Bsdf> operator()(const ThinDielectricDescription& d) { return make_thin_dielectric(d); }
   std::unique_ptr<Bsdf> operator()(const NullDescription&) { return make_null(); }
-  std::unique_ptr<Bsdf> operator()(const MaskDescription& d) { return make_mask(held("material", d.material), d.opacity.factor); }
+  std::unique_ptr<Bsdf> operator()(const MaskDescription& d) {
+    return make_mask(held("material", d.material), d.opacity.factor, d.cutoff);
+  }
   std::unique_ptr<Bsdf> operator()(const BlendDescription& d) {
     const Bsdf& first = held("first", d.first);
     return make_blend(first, held("second", d.second), d.weight.factor);

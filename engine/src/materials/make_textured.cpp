@@ -77,7 +77,7 @@ class Maker {
   Result operator()(const MaskDescription& d) {
     const NestedMaterial covered = held(d.material);
     const TexturedScalar opacity = scalar(d.opacity);
-    return covered.textured != nullptr || opacity.texture != nullptr ? make_textured_mask(covered, opacity) : nullptr;
+    return covered.textured != nullptr || opacity.texture != nullptr ? make_textured_mask(covered, opacity, d.cutoff) : nullptr;
   }
   Result operator()(const BlendDescription& d) {
     const NestedMaterial first = held(d.first), second = held(d.second);
@@ -86,7 +86,7 @@ class Maker {
     return varies ? make_textured_blend(first, second, weight) : nullptr;
   }
   Result operator()(const NormalMapDescription& d) {
-    return make_normal_map(held(d.material), *texture_of(textures_, d.normals_texture));
+    return make_normal_map(held(d.material), *texture_of(textures_, d.normals_texture), d);
   }
   Result operator()(const BumpMapDescription& d) {
     return make_bump_map(held(d.material), *texture_of(textures_, d.height_texture), d.scale);

@@ -10,6 +10,14 @@
 namespace fluxfarm {
 namespace {
 
+// Interpolation and luminance of texels that lie exactly at the cut-off may round below it.
+constexpr float kRounding = 1e-6f;
+
+float covered_share(float opacity, std::optional<float> cutoff) {
+  if (!cutoff) return opacity;
+  return opacity >= *cutoff - kRounding ? 1.0f : 0.0f;
+}
+
 class Mask final : public Bsdf {
  public:
   Mask(const Bsdf& covered, float opacity) : covered_(covered), opacity_(opacity) {}
@@ -37,24 +45,28 @@ class Mask final : public Bsdf {
 
 class TexturedMask final : public TexturedMaterial {
  public:
-  TexturedMask(NestedMaterial covered, TexturedScalar opacity) : covered_(covered), opacity_(opacity) {}
+  TexturedMask(NestedMaterial covered, TexturedScalar opacity, std::optional<float> cutoff)
+      : covered_(covered), opacity_(opacity), cutoff_(cutoff) {}
 
   const Bsdf& add_to(BsdfSpace& space, const MaterialPoint& point) const override {
     const Bsdf& covered = covered_.at(point, space);
-    return space.make<Mask>(covered, opacity_.at(point));
+    return space.make<Mask>(covered, covered_share(opacity_.at(point), cutoff_));
   }
 
  private:
   NestedMaterial covered_;
   TexturedScalar opacity_;
+  std::optional<float> cutoff_;
 };
 
 }  // namespace
 
-std::unique_ptr<Bsdf> make_mask(const Bsdf& covered, float opacity) { return std::make_unique<Mask>(covered, opacity); }
+std::unique_ptr<Bsdf> make_mask(const Bsdf& covered, float opacity, std::optional<float> cutoff) {
+  return std::make_unique<Mask>(covered, covered_share(opacity, cutoff));
+}
 
-std::unique_ptr<TexturedMaterial> make_textured_mask(NestedMaterial covered, TexturedScalar opacity) {
-  return std::make_unique<TexturedMask>(covered, opacity);
+std::unique_ptr<TexturedMaterial> make_textured_mask(NestedMaterial covered, TexturedScalar opacity, std::optional<float> cutoff) {
+  return std::make_unique<TexturedMask>(covered, opacity, cutoff);
 }
 
 }  // namespace fluxfarm

@@ -3,6 +3,7 @@
 // A colour may vary over the surface: `..._texture` is an index into the scene's textures, whose value multiplies the constant.
 #pragma once
 
+#include <optional>
 #include <variant>
 
 #include "math/rgb.h"
@@ -85,9 +86,11 @@ struct PrincipledDescription {
 
 // glTF 2.0's metallic-roughness model with the KHR extensions specular, ior, transmission, clearcoat, sheen and anisotropy.
 // Scatters on both sides. Texture channels as glTF has them: metallic B, roughness G; transmission R, clear coat R and its
-// roughness G; colours RGB. Each multiplies its constant.
+// roughness G; colours RGB. Those of specular and sheen_roughness are grey: the reader takes them from their alpha. Each
+// multiplies its constant.
 struct GltfDescription {
   Rgb base_color{1.0f};
+  bool vertex_colors = false;  // the colours of the mesh's vertices multiply the base colour
   float metallic = 1;
   float roughness = 1;  // perceptual: the GGX alpha is its square
   float ior = 1.5f;     // interior over exterior; 0 reflects all at every angle
@@ -104,10 +107,12 @@ struct GltfDescription {
   int base_color_texture = kNoTexture;
   int metallic_roughness_texture = kNoTexture;
   int transmission_texture = kNoTexture;
+  int specular_texture = kNoTexture;
   int specular_color_texture = kNoTexture;
   int clearcoat_texture = kNoTexture;
   int clearcoat_roughness_texture = kNoTexture;
   int sheen_color_texture = kNoTexture;
+  int sheen_roughness_texture = kNoTexture;
 };
 
 // Front and back are indices into the same list of materials; neither may transmit light.
@@ -126,10 +131,12 @@ struct NullDescription {};
 
 // The materials that these hold are indices into the same list.
 
-// `opacity` in [0, 1] is covered by the material; the rest passes.
+// `opacity` in [0, 1] is covered by the material; the rest passes. With a cut-off all is covered where the opacity reaches it, and
+// nothing elsewhere.
 struct MaskDescription {
   int material = 0;
   ScalarParameter opacity{0.5f};
+  std::optional<float> cutoff{};
 };
 
 // (1 - weight) of the first, weight of the second.
@@ -139,10 +146,13 @@ struct BlendDescription {
   ScalarParameter weight{0.5f};
 };
 
-// Normals are 2 rgb - 1, in the frame of the surface.
+// Normals are 2 rgb - 1 with x and y times `scale`, in the frame of the surface: x along increasing u, y across x and the normal,
+// or, with `y_against_v`, on the side of decreasing v, which is another one where the texture lies mirrored.
 struct NormalMapDescription {
   int material = 0;
   int normals_texture = 0;
+  float scale = 1;
+  bool y_against_v = false;
 };
 
 // Height is scale times the luminance of the texture, m.

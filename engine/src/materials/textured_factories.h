@@ -15,13 +15,13 @@ namespace fluxfarm {
 std::unique_ptr<TexturedMaterial> make_textured_rough_conductor(const RoughConductorDescription&, const Textures&);
 std::unique_ptr<TexturedMaterial> make_textured_plastic(const PlasticDescription&, const Textures&);
 std::unique_ptr<TexturedMaterial> make_textured_rough_plastic(const RoughPlasticDescription&, const Textures&);
-std::unique_ptr<TexturedMaterial> make_textured_gltf(const GltfDescription&, const Textures&);  // null without textures
+std::unique_ptr<TexturedMaterial> make_textured_gltf(const GltfDescription&, const Textures&);  // null where nothing varies
 std::unique_ptr<TexturedMaterial> make_textured_principled(const PrincipledDescription&, const Textures&);
 
 std::unique_ptr<TexturedMaterial> make_textured_twosided(NestedMaterial front, NestedMaterial back);
-std::unique_ptr<TexturedMaterial> make_textured_mask(NestedMaterial covered, TexturedScalar opacity);
+std::unique_ptr<TexturedMaterial> make_textured_mask(NestedMaterial covered, TexturedScalar opacity, std::optional<float> cutoff);
 std::unique_ptr<TexturedMaterial> make_textured_blend(NestedMaterial first, NestedMaterial second, TexturedScalar weight);
-std::unique_ptr<TexturedMaterial> make_normal_map(NestedMaterial nested, const Texture& normals);
+std::unique_ptr<TexturedMaterial> make_normal_map(NestedMaterial nested, const Texture& normals, const NormalMapDescription&);
 std::unique_ptr<TexturedMaterial> make_bump_map(NestedMaterial nested, const Texture& height, float scale);
 
 // The texture of that index, or null for kNoTexture.

@@ -38,8 +38,8 @@ class BsdfSpace {
 // A place of a surface, as materials that vary over it need to know it.
 struct MaterialPoint {
   TexturePoint texture;
-  // Set only for materials with a bump map: derivatives of the position by u and v, m, and the geometric normal, all in the frame
-  // of the shading normal.
+  // Set only for materials with a bump map, or a normal map that asks for v: derivatives of the position by u and v, m, and the
+  // geometric normal, all in the frame of the shading normal.
   Vec3f dp_du{}, dp_dv{}, geometric_normal{0, 0, 1};
 };
 

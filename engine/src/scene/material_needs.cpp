@@ -42,10 +42,12 @@ class Collector {
     needs_.tangents |= needs_.anisotropic;
   }
   void operator()(const GltfDescription& d) {
-    for (const int index : {d.base_color_texture, d.metallic_roughness_texture, d.transmission_texture, d.specular_color_texture,
-                            d.clearcoat_texture, d.clearcoat_roughness_texture, d.sheen_color_texture}) {
+    for (const int index :
+         {d.base_color_texture, d.metallic_roughness_texture, d.transmission_texture, d.specular_texture, d.specular_color_texture,
+          d.clearcoat_texture, d.clearcoat_roughness_texture, d.sheen_color_texture, d.sheen_roughness_texture}) {
       texture(index);
     }
+    needs_.vertex_colors |= d.vertex_colors;
     needs_.anisotropic |= d.anisotropy > 0;
     needs_.tangents |= needs_.anisotropic;
   }
@@ -67,6 +69,7 @@ class Collector {
   }
   void operator()(const NormalMapDescription& d) {
     needs_.normal_maps = needs_.tangents = true;
+    needs_.uv_derivatives |= d.y_against_v;
     texture(d.normals_texture);
     held(d.material);
   }

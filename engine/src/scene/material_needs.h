@@ -12,7 +12,7 @@ struct MaterialNeeds {
   bool normal_maps = false;     // or bump maps
   bool tangents = false;        // for either
   bool uvs = false;             // some texture lies over uv
-  bool uv_derivatives = false;  // for bump maps
+  bool uv_derivatives = false;  // for bump maps, and normal maps that ask for v
   bool vertex_colors = false;
   bool masks = false;        // light goes straight through, in part or everywhere
   bool delta_lobes = false;  // some light is scattered into single directions

@@ -54,7 +54,7 @@ class Describer {
     write("sheen_color", d.sheen_color);
     out_ << d.metallic << " " << d.roughness << " " << d.ior << " " << d.specular << " " << d.transmission << " " << d.thin << " "
          << d.anisotropy << " " << d.anisotropy_rotation << " " << d.clearcoat << " " << d.clearcoat_roughness << " "
-         << d.sheen_roughness << "\n";
+         << d.sheen_roughness << " " << d.vertex_colors << "\n";
   }
   void write(const CheckerboardDescription& t) {
     write("color0", t.color0);
@@ -112,12 +112,14 @@ class Describer {
   void write(const ThinDielectricDescription& m) { write(m.dielectric); }
   void write(const NullDescription&) { out_ << "null\n"; }
   void write(const MaskDescription& m) {
-    out_ << "mask " << m.material << " " << m.opacity.factor << " " << m.opacity.texture << "\n";
+    out_ << "mask " << m.material << " " << m.opacity.factor << " " << m.opacity.texture << " " << m.cutoff.value_or(-1) << "\n";
   }
   void write(const BlendDescription& m) {
     out_ << "blend " << m.first << " " << m.second << " " << m.weight.factor << " " << m.weight.texture << "\n";
   }
-  void write(const NormalMapDescription& m) { out_ << "normals " << m.material << " " << m.normals_texture << "\n"; }
+  void write(const NormalMapDescription& m) {
+    out_ << "normals " << m.material << " " << m.normals_texture << " " << m.scale << "\n";
+  }
   void write(const BumpMapDescription& m) { out_ << "bumps " << m.material << " " << m.height_texture << " " << m.scale << "\n"; }
   void write(const MeshAttributeDescription& t) { out_ << "vertex_color " << t.scale << "\n"; }
   void write(const HomogeneousMediumDescription& m) {

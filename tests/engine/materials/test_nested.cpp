@@ -123,6 +123,20 @@ TEST(Mask, OpacityMayBeATexture) {
   EXPECT_FLOAT_EQ(mask.at(place(0.9f)).value(wo, wi).f.r, 0.75f * 0.8f * kInvPi);
 }
 
+TEST(Mask, CutOffCoversAllOrNothing) {
+  const Vec3f wo = direction(0.6f, 0.4f), wi = direction(0.5f, 3.3f);
+  // 0.8 times a quarter is below the cut-off, times three quarters above it.
+  AtHit mask({MaskDescription{1, {0.8f, 0}, 0.5f}, kRed}, {quarters()});
+  EXPECT_TRUE(mask.at(place(0.1f)).value(wo, wi).f.is_black());
+  EXPECT_TRUE(mask.at(place(0.1f)).sample(wo, 0, {0.2f, 0.2f})->delta);
+  EXPECT_FLOAT_EQ(mask.at(place(0.9f)).value(wo, wi).f.r, 0.8f * kInvPi);
+  EXPECT_FALSE(mask.at(place(0.9f)).sample(wo, 0.999f, {0.2f, 0.2f})->delta);
+  expect_samples_follow(mask.at(place(0.9f)), "mask above its cut-off");
+  // Without a texture; the cut-off itself is covered.
+  EXPECT_FLOAT_EQ(AtHit({MaskDescription{1, {0.5f}, 0.5f}, kRed}).constant().value(wo, wi).f.r, 0.8f * kInvPi);
+  EXPECT_TRUE(AtHit({MaskDescription{1, {0.49f}, 0.5f}, kRed}).constant().value(wo, wi).f.is_black());
+}
+
 TEST(Blend, MixesValuesAndDensities) {
   AtHit blend({BlendDescription{1, 2, {0.3f}}, kRed, kMetal});
   const auto red = make(kRed), metal = make(kMetal);
@@ -219,6 +233,26 @@ TEST(NormalMap, TurnsAnisotropyWithTheSurfacesTangent) {
   const Vec3f wo = direction(0.9f, 2), wi = direction(0.8f, 4);
   const float expected = flat->value(frame.to_local(wo), frame.to_local(wi)).f.r * dot(n, wi) / wi.z;
   EXPECT_NEAR(map.at(place(0)).value(wo, wi).f.r / expected, 1, 1e-3f);
+}
+
+TEST(NormalMap, ScaleFlattensOrTurnsTheTilt) {
+  AtHit map({NormalMapDescription{1, 0, -0.5f}, kRed}, {everywhere(encoded(normalize({0.4f, 0.6f, 1})))});
+  const Vec3f n = normalize({-0.2f, -0.3f, 1}), wo = direction(0.9f, 2), wi = direction(0.7f, 1);
+  EXPECT_NEAR(map.at(place(0)).value(wo, wi).f.r * wi.z, 0.8f * kInvPi * dot(n, wi), 1e-5f);
+  expect_samples_follow(map.at(place(0)), "scaled normal map");
+}
+
+TEST(NormalMap, YAgainstVFollowsTheTexture) {
+  AtHit map({NormalMapDescription{1, 0, 1, true}, kRed}, {everywhere(encoded(normalize({0, 0.6f, 1})))});
+  const Vec3f wo = direction(0.9f, 2), wi = direction(0.7f, 1);
+  const auto radiance = [&](Vec3f dp_dv) {
+    MaterialPoint point = place(0);
+    point.dp_du = {2, 0, 0};
+    point.dp_dv = dp_dv;
+    return map.at(point).value(wo, wi).f.r * wi.z;
+  };
+  EXPECT_NEAR(radiance({0.3f, -3, 0}), 0.8f * kInvPi * dot(normalize({0, 0.6f, 1}), wi), 1e-5f);  // v runs down, y up
+  EXPECT_NEAR(radiance({0.3f, 3, 0}), 0.8f * kInvPi * dot(normalize({0, -0.6f, 1}), wi), 1e-5f);
 }
 
 TEST(NormalMapTwin, DensityOfATiltOffByTwoDegreesIsRejected) {

@@ -48,6 +48,20 @@ DielectricDescription glass(Rgb colour, int texture) {
   return d;
 }
 
+// Shiny and fuzzy: the factors of its reflectance and of the roughness of its sheen show.
+MaterialDescription gltf(float specular, float sheen_roughness, int specular_texture, int sheen_roughness_texture) {
+  GltfDescription d;
+  d.metallic = 0;
+  d.roughness = 0.4f;
+  d.base_color = {0.2f, 0.1f, 0.3f};
+  d.sheen_color = Rgb{0.8f};
+  d.specular = specular;
+  d.sheen_roughness = sheen_roughness;
+  d.specular_texture = specular_texture;
+  d.sheen_roughness_texture = sheen_roughness_texture;
+  return d;
+}
+
 std::vector<TexturedCase> cases() {
   const Rgb one{1.0f}, half{0.5f};
   return {
@@ -61,6 +75,8 @@ std::vector<TexturedCase> cases() {
        }},
       {"plastic diffuse", plastic(one, half, 0, kNoTexture), [](Rgb c) { return plastic(c, Rgb{0.5f}, kNoTexture, kNoTexture); }},
       {"plastic specular", plastic(half, one, kNoTexture, 0), [](Rgb c) { return plastic(Rgb{0.5f}, c, kNoTexture, kNoTexture); }},
+      {"gltf specular", gltf(1, 0.5f, 0, kNoTexture), [](Rgb c) { return gltf(c.r, 0.5f, kNoTexture, kNoTexture); }},
+      {"gltf sheen", gltf(1, 1, kNoTexture, 0), [](Rgb c) { return gltf(1, c.r, kNoTexture, kNoTexture); }},
       {"roughplastic", rough(plastic(one, one, 0, 0)), [](Rgb c) { return rough(plastic(c, c, kNoTexture, kNoTexture)); }}};
 }
 
@@ -140,6 +156,22 @@ TEST(TexturedMaterial, AnswersAsTheConstantOneAboutItsLobes) {
     EXPECT_EQ(textured.at(kOnLeft).chooses_lobe(), constant->chooses_lobe());
     EXPECT_EQ(textured.at(kOnLeft).transmits(), constant->transmits());
   }
+}
+
+TEST(TexturedMaterial, GltfMultipliesItsBaseColourByThatOfTheVertices) {
+  GltfDescription d;
+  d.base_color = {0.9f, 0.6f, 0.3f};
+  d.roughness = 0.5f;
+  d.vertex_colors = true;
+  const auto bsdfs = make_bsdfs({d});
+  const auto materials = make_textured_materials({d}, bsdfs, {});
+  BsdfSpace space;
+  const Bsdf& at = materials[0]->at({.texture = {.uv = {}, .vertex_color = kLeft}}, space);
+  GltfDescription constant = d;
+  constant.vertex_colors = false;
+  EXPECT_GT(difference(at, *make(constant)), 1e-2f);
+  constant.base_color = d.base_color * kLeft;
+  EXPECT_LT(difference(at, *make(constant)), 1e-5f);
 }
 
 TEST(TexturedMaterial, IsOnlyMadeWhereAParameterHasATexture) {

@@ -31,6 +31,7 @@ TEST(MaterialNeeds, OfNormalMapsAreTangentsAndOfBumpMapsDerivativesToo) {
   const MaterialNeeds normals = needs({NormalMapDescription{1, 0}, DiffuseDescription{}});
   EXPECT_TRUE(normals.normal_maps && normals.tangents && normals.uvs);
   EXPECT_FALSE(normals.uv_derivatives || normals.anisotropic);
+  EXPECT_TRUE(needs({NormalMapDescription{1, 0, 1, true}, DiffuseDescription{}}).uv_derivatives);
   EXPECT_TRUE(needs({BumpMapDescription{1, 0, 1}, DiffuseDescription{}}).uv_derivatives);
 }
 
@@ -54,6 +55,16 @@ TEST(MaterialNeeds, OfDeltaLobesAreThoseThatSamplingShows) {
     EXPECT_EQ(needs({c.description}).delta_lobes, delta) << c.name;
   }
   EXPECT_TRUE(needs({MaskDescription{1, {0.5f}}, PlasticDescription{}}).delta_lobes);
+}
+
+TEST(MaterialNeeds, OfGltfAreVertexColorsWhereItShowsThem) {
+  GltfDescription d;
+  EXPECT_FALSE(needs({d}).vertex_colors || needs({d}).uvs);
+  d.vertex_colors = true;
+  EXPECT_TRUE(needs({d}).vertex_colors);
+  EXPECT_FALSE(needs({d}).uvs);
+  d.sheen_roughness_texture = 0;
+  EXPECT_TRUE(needs({d}).uvs);
 }
 
 TEST(MaterialNeeds, OfTwoRoughnessesAreTangents) {
