@@ -5,6 +5,9 @@
 #include <ImfIntAttribute.h>
 #include <ImfOutputFile.h>
 #include <ImfStringAttribute.h>
+#include <ImfThreading.h>
+
+#include <mutex>
 
 #include "io/exr.h"
 #include "support/check.h"
@@ -12,6 +15,9 @@
 
 namespace fluxfarm {
 namespace {
+
+// Compression takes most of the time, and a finished job waits for nothing else.
+constexpr int kThreads = 2;
 
 Imf::Header make_header(const Image& image) {
   const PixelRect& rect = image.data_window;
@@ -51,7 +57,9 @@ void write_exr(const std::filesystem::path& path, const Image& image) {
                    "a channel covers the data window");
   }
   try {
-    Imf::OutputFile file(path.c_str(), make_header(image), 0);  // 0: no threads of its own
+    static std::once_flag once;
+    std::call_once(once, [] { Imf::setGlobalThreadCount(kThreads); });
+    Imf::OutputFile file(path.c_str(), make_header(image), kThreads);
     file.setFrameBuffer(make_frame_buffer(image));
     file.writePixels(image.data_window.height);
   } catch (const std::exception& error) {

@@ -131,10 +131,6 @@ GltfNodes read_into(GltfFile& file, const Transform& to_world, SceneDescription&
   GltfMaterials materials(file, textures, scene);
   MeshPlacer(file, materials, scene).place(nodes.meshes);
   for (const GltfPlaced& light : nodes.lights) scene.emitters.push_back(read_gltf_light(file, light));
-  const bool masks = std::any_of(scene.materials.begin(), scene.materials.end(),
-                                 [](const MaterialDescription& m) { return std::holds_alternative<MaskDescription>(m); });
-  if (masks && !nodes.lights.empty())
-    scene.warnings.push_back(file.name() + ": alphaMode: the light of punctual lights does not pass what is transparent by alpha");
   if (file.size("animations") > 0) scene.warnings.push_back(file.name() + ": animations are not read; nothing moves");
   return nodes;
 }
