@@ -37,7 +37,7 @@ float CharlieAlbedo::operator()(float cos, float roughness) const {
   };
   const auto [r, s] = split(roughness);
   const auto [c, t] = split(cos);
-  const auto row = [&](std::size_t i) { return nodes_[i][c] * (1 - t) + nodes_[i][c + 1] * t; };
+  const auto row = [this, c = c, t = t](std::size_t i) { return nodes_[i][c] * (1 - t) + nodes_[i][c + 1] * t; };
   return row(r) * (1 - s) + row(r + 1) * s;
 }
 

@@ -1,7 +1,7 @@
 // Covers part of a surface, at random: with probability `opacity` light meets the nested BSDF, else it passes straight on.
 //
-// Next-event estimation takes the surface as opaque; light behind it is found by the paths that pass, which count it in full. That is
-// unbiased, if noisy for small lights, except for lights that no path can meet: points and directions do not shine through.
+// Next-event estimation takes the surface as opaque; light behind it is found by the paths that pass, which count it in full. That
+// is unbiased, if noisy for small lights, except for lights that no path can meet: points and directions do not shine through.
 #include "materials/bsdf_factories.h"
 #include "materials/directions.h"
 #include "materials/nested.h"

@@ -129,7 +129,8 @@ Scene::Scene(const SceneDescription& description, int threads)
   const auto is_mask = [](const MaterialDescription& material) { return std::holds_alternative<MaskDescription>(material); };
   if (census_.point_emitters + census_.spot_emitters + census_.directional_emitters > 0 &&
       std::any_of(description.materials.begin(), description.materials.end(), is_mask)) {
-    warnings_.push_back("materials: masks cast whole shadows of point, spot and directional emitters, whose light does not pass them");
+    warnings_.push_back(
+        "materials: masks cast whole shadows of point, spot and directional emitters, whose light does not pass them");
   }
   std::vector<const Emitter*> emitters;
   for (const auto& emitter : area_emitters_) emitters.push_back(emitter.get());
