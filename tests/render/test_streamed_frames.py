@@ -5,7 +5,10 @@ from pathlib import Path
 
 import numpy as np
 from conftest import read_exr
-from farm import SIDE, SPP, Farm
+from farm import SIDE, Farm
+
+# Some seconds of work: after each merge the next one waits sixteen times as long as it took.
+SAMPLES = 600
 
 
 def multipart_bodies(reply_type: str, body: bytes) -> list[bytes]:
@@ -26,7 +29,7 @@ def multipart_bodies(reply_type: str, body: bytes) -> list[bytes]:
 
 def test_frames_are_whole_images_whose_samples_rise(farms: list[Farm], tmp_path: Path) -> None:
     farms.append(farm := Farm(tmp_path, workers=2))
-    job_id = farm.submit()
+    job_id = farm.submit(goal={"spp": SAMPLES})
     reply = farm.client.http.get(f"/v1/jobs/{job_id}/frames", timeout=120)
     assert reply.headers["content-type"].startswith("multipart/mixed")
     samples = []
@@ -40,4 +43,4 @@ def test_frames_are_whole_images_whose_samples_rise(farms: list[Farm], tmp_path:
         samples.append(int(layers["samples"].max()))
     assert len(samples) >= 3
     assert samples == sorted(set(samples))
-    assert samples[-1] == SPP
+    assert samples[-1] == SAMPLES

@@ -47,17 +47,21 @@ class EngineProcess:
     async def run(self) -> str:
         """Start the child and serve it until it is gone; returns why it ended. Its leases are reported lost."""
         ours, theirs = socket.socketpair()
-        with theirs:
-            self._child = await asyncio.create_subprocess_exec(
-                self._program,
-                *("worker", "--fd", str(theirs.fileno()), "--threads", str(self._threads)),
-                pass_fds=[theirs.fileno()],
-                stdin=asyncio.subprocess.DEVNULL,
-                stdout=asyncio.subprocess.PIPE,
-                stderr=asyncio.subprocess.STDOUT,
-                start_new_session=True,
-            )
-        reader, self._writer = await asyncio.open_connection(sock=ours, limit=1 << 20)
+        try:
+            with theirs:
+                self._child = await asyncio.create_subprocess_exec(
+                    self._program,
+                    *("worker", "--fd", str(theirs.fileno()), "--threads", str(self._threads)),
+                    pass_fds=[theirs.fileno()],
+                    stdin=asyncio.subprocess.DEVNULL,
+                    stdout=asyncio.subprocess.PIPE,
+                    stderr=asyncio.subprocess.STDOUT,
+                    start_new_session=True,
+                )
+            reader, self._writer = await asyncio.open_connection(sock=ours, limit=1 << 20)
+        except BaseException:
+            ours.close()
+            raise
         helpers = [asyncio.ensure_future(self._listen_to_logs()), asyncio.ensure_future(self._watch_for_stalls())]
         try:
             await self._serve(reader)
