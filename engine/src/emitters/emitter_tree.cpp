@@ -29,7 +29,7 @@ EmitterTree::Importances EmitterTree::importances(const Block& block, const Emit
   const float all_around = n == Vec3f{} ? 1.0f : 0.0f;
   const float other_side = reference.both_sides ? -1.0f : 1.0f;  // the factor of a cosine below zero
   Importances result;
-  for (std::size_t i = 0; i < kWidth; ++i) {
+  const auto weigh = [&](std::size_t i) {
     const Vec3f d{block.center_x[i] - p.x, block.center_y[i] - p.y, block.center_z[i] - p.z};
     const float squared = length_squared(d), radius_squared = block.radius_squared[i];
     // From inside, any direction is possible; the bound stays finite.
@@ -46,6 +46,9 @@ EmitterTree::Importances EmitterTree::importances(const Block& block, const Emit
 
     const float from_outside = leaving > block.cos_reach[i] ? leaving * (arriving > 0 ? arriving : 0.0f) : 0.0f;
     result.of[i] = block.intensity[i] / bounded * (inside ? 1.0f : from_outside);
+  };
+  for (std::size_t begin = 0; begin < block.end; begin += kVector) {
+    for (std::size_t i = 0; i < kVector; ++i) weigh(begin + i);
   }
   result.sum = 0;
   for (const float importance : result.of) result.sum += importance;

@@ -47,6 +47,7 @@ class EmitterTree {
 
  private:
   static constexpr std::size_t kWidth = 16;
+  static constexpr std::size_t kVector = 4;  // lanes that are weighed at once
   static constexpr std::uint32_t kLeaf = 0x80000000u;
 
   // The children of a node, one in each lane; lanes without a child have no intensity.
@@ -57,6 +58,7 @@ class EmitterTree {
     std::array<float, kWidth> cos_spread{}, sin_spread{}, cos_reach{};
     std::array<float, kWidth> intensity{};
     std::array<std::uint32_t, kWidth> child{};  // block; or kLeaf and the index of the emitter
+    std::size_t end = 0;                        // of the lanes with a child, rounded up to a whole kVector
 
     Block() { radius_squared.fill(1); }
     void set(std::size_t lane, const EmitterBounds& bounds);
@@ -67,7 +69,7 @@ class EmitterTree {
   class Builder;
 
   struct Importances {
-    std::array<float, kWidth> of;  // in units of their own; zero only for what can bring nothing
+    std::array<float, kWidth> of{};  // in units of their own; zero only for what can bring nothing
     float sum;
   };
   static Importances importances(const Block& block, const EmitterReference& reference);

@@ -200,6 +200,7 @@ void EmitterTree::Block::set(std::size_t lane, const EmitterBounds& bounds) {
   sin_spread[lane] = bounds.spread < kPi ? std::sin(bounds.spread) : 0.0f;
   cos_reach[lane] = bounds.reach < kPi / 2 ? std::cos(bounds.reach) : 0.0f;
   intensity[lane] = bounds.intensity;
+  end = std::max(end, (lane / kVector + 1) * kVector);
 }
 
 EmitterTree::EmitterTree(const std::vector<EmitterBounds>& emitters) { Builder(emitters).draw_together(*this); }
