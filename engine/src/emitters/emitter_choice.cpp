@@ -65,6 +65,10 @@ EmitterChoice::EmitterChoice(const std::vector<const Emitter*>& emitters) : emit
 }
 
 std::optional<EmitterChoice::Choice> EmitterChoice::sample_many(const EmitterReference& reference, float u) const {
+  if (distant_.empty()) {
+    const std::optional<EmitterTree::Choice> leaf = tree_.sample(reference, u);
+    return leaf ? std::optional(Choice{candidates_[leaf->index], leaf->probability}) : std::nullopt;
+  }
   const DiscreteDistribution::Choice group = groups_.sample(u);
   if (group.index < distant_.size()) return Choice{distant_[group.index], group.probability};
   const std::optional<EmitterTree::Choice> leaf = tree_.sample(reference, group.u);
@@ -76,7 +80,8 @@ float EmitterChoice::pdf_of_many(std::size_t emitter, const EmitterReference& re
   const auto& [point, hit, ray] = seen;
   const auto& [first, mesh] = places_[emitter];
   const std::size_t leaf = first + (mesh != nullptr ? hit.primitive : 0);
-  const float probability = groups_.probability(distant_.size()) * (by_place() ? tree_.probability(reference, leaf) : 1.0f);
+  const float in_tree = distant_.empty() ? 1.0f : groups_.probability(distant_.size());
+  const float probability = in_tree * (by_place() ? tree_.probability(reference, leaf) : 1.0f);
   if (!(probability > 0)) return 0;
   const float pdf = mesh != nullptr ? mesh->triangle_pdf(hit.primitive, ray.origin, point, ray.direction, hit.t)
                                     : static_cast<const AreaEmitter*>(emitters_[emitter])

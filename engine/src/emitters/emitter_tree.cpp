@@ -51,7 +51,7 @@ EmitterTree::Importances EmitterTree::importances(const Block& block, const Emit
     for (std::size_t i = 0; i < kVector; ++i) weigh(begin + i);
   }
   result.sum = 0;
-  for (const float importance : result.of) result.sum += importance;
+  for (std::size_t i = 0; i < block.end; ++i) result.sum += result.of[i];
   return result;
 }
 
@@ -59,17 +59,18 @@ std::optional<EmitterTree::Choice> EmitterTree::sample(const EmitterReference& r
   float probability = 1;
   for (std::uint32_t block = 0;;) {
     const Importances importance = importances(blocks_[block], reference);
+    const std::size_t end = blocks_[block].end;
     if (!(importance.sum > 0)) return std::nullopt;
     const float target = u * importance.sum;
     float below = 0;  // the importances before the lane
     std::size_t lane = 0, last = 0;
-    for (; lane < kWidth; ++lane) {
+    for (; lane < end; ++lane) {
       if (!(importance.of[lane] > 0)) continue;
       last = lane;
       if (target < below + importance.of[lane]) break;
       below += importance.of[lane];
     }
-    if (lane == kWidth) below -= importance.of[lane = last];  // rounding
+    if (lane == end) below -= importance.of[lane = last];  // rounding
     probability *= importance.of[lane] / importance.sum;
     u = std::clamp((target - below) / importance.of[lane], 0.0f, 0x1.fffffep-1f);
     const std::uint32_t child = blocks_[block].child[lane];
