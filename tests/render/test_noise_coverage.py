@@ -43,6 +43,7 @@ def test_half_the_error_would_not_cover(tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
+@pytest.mark.timeout(900)
 def test_interval_covers_over_32_seeds(tmp_path: Path) -> None:
     share = coverage(tmp_path, side=128, spp=64, seeds=32, reference_spp=16384)
     print(f"coverage of the 95 % interval over 32 seeds: {share:.4f}")
