@@ -162,12 +162,12 @@ def test_restart_in_a_round_goes_on_with_its_tiles() -> None:
 
 
 def test_expected_samples_follow_the_fall_of_the_error() -> None:
-    pixels, base = 100, replace(REVISION, error_bound=0.1)
-    first = replace(base, mean_samples=16.0, error_noise=0.16, samples_expected=25_600.0)
+    pixels, base = 100, REVISION
+    first = replace(base, mean_samples=16.0, error_bound=0.16, samples_expected=25_600.0)
     assert samples_expected(None, first, pixels) == 25_600
     # Half of the error with twice the samples: what is left falls as fast.
-    second = replace(base, mean_samples=32.0, error_noise=0.08, samples_expected=12_800.0)
+    second = replace(base, mean_samples=32.0, error_bound=0.08, samples_expected=12_800.0)
     assert samples_expected(first, second, pixels) == pytest.approx(3200 * (12_800 / 3200) ** 0.5)
     # Random samples gain no more than the engine takes for granted, and noise in the estimate cannot make it worse.
-    third = replace(base, mean_samples=64.0, error_noise=0.09, samples_expected=12_800.0)
+    third = replace(base, mean_samples=64.0, error_bound=0.09, samples_expected=12_800.0)
     assert samples_expected(second, third, pixels) == pytest.approx(12_800)
