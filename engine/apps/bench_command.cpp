@@ -1,13 +1,14 @@
 // fluxfarm-engine bench path: how much of bare Embree's ray rate path tracing reaches, on the rays that it really traces.
 //
-// The rays of a few thousand paths are recorded; then rounds of path tracing and rounds of tracing the recorded rays alone take
-// turns, and the medians are compared, so that a machine that slows down for a while slows down both.
+// The rays of tiles spread over the picture are recorded; then rounds of path tracing those tiles and rounds of tracing their
+// recorded rays alone take turns, and the medians are compared, so that a machine that slows down for a while slows down both.
 #include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <numeric>
 
 #include "commands.h"
 #include "film/tile_grid.h"
@@ -28,9 +29,9 @@ struct BenchOptions {
 };
 
 constexpr int kRounds = 9;
-constexpr double kRoundSeconds = 0.3;
 constexpr std::uint32_t kBenchSamples = 64;       // a pass of the usual size
-constexpr std::size_t kRecordedRays = 1'000'000;  // a thread
+constexpr int kBenchTile = 8;                     // pixels; small, so that those of one thread lie all over the picture
+constexpr std::size_t kRecordedRays = 1'000'000;  // a thread, at least
 
 using Clock = std::chrono::steady_clock;
 
@@ -41,71 +42,81 @@ double median(std::vector<double> values) {
   return values[values.size() / 2];
 }
 
+// The same tiles and samples in every round: each thread has its own.
 class PathBench {
  public:
   PathBench(const Scene& scene, const Integrator& integrator, int threads)
-      : scene_(scene),
-        integrator_(integrator),
-        threads_(threads),
-        tiles_(make_tiles({scene.film().crop_x, scene.film().crop_y, scene.film().crop_width, scene.film().crop_height}, 32)) {}
-
-  // One round of path tracing: rays and samples a second over all threads.
-  std::pair<double, double> trace_round() {
-    std::atomic<std::uint64_t> rays{0}, samples{0};
-    const Clock::time_point start = Clock::now();
-    on_every_thread([&](int) {
-      RayQueries queries(scene_.accelerator());
-      while (seconds_since(start) < kRoundSeconds) samples += trace_tile(queries);
-      rays += queries.rays();
-    });
-    const double seconds = seconds_since(start);
-    return {static_cast<double>(rays) / seconds, static_cast<double>(samples) / seconds};
+      : scene_(scene), integrator_(integrator), shares_(static_cast<std::size_t>(threads)) {
+    record(make_tiles({scene.film().crop_x, scene.film().crop_y, scene.film().crop_width, scene.film().crop_height}, kBenchTile));
   }
 
-  void record() {
-    recorded_.resize(static_cast<std::size_t>(threads_));
-    on_every_thread([&](int thread) {
-      std::vector<RecordedRay>& rays = recorded_[static_cast<std::size_t>(thread)];
+  // One round of path tracing, in seconds.
+  double trace_round() {
+    return on_every_thread([&](Share& share) {
       RayQueries queries(scene_.accelerator());
-      queries.record_to(&rays);
-      while (rays.size() < kRecordedRays) trace_tile(queries);
-      rays.resize(kRecordedRays);
+      for (const TileTask& task : share.tasks) render_tile(scene_, integrator_, task, queries, never_);
     });
   }
 
-  // One round of tracing the recorded rays and nothing else: rays a second over all threads.
+  // One round of tracing the rays of those tiles and nothing else, in seconds.
   double replay_round() {
     std::atomic<std::uint64_t> hits{0};
-    const Clock::time_point start = Clock::now();
-    on_every_thread([&](int thread) { hits += scene_.accelerator().replay(recorded_[static_cast<std::size_t>(thread)]); });
-    const double seconds = seconds_since(start);
+    const double seconds = on_every_thread([&](Share& share) { hits += scene_.accelerator().replay(share.rays); });
     if (hits == 0) throw Error("the recorded rays hit nothing: there is nothing to measure");
-    return static_cast<double>(kRecordedRays) * threads_ / seconds;
+    return seconds;
+  }
+
+  double rays() const {
+    double rays = 0;
+    for (const Share& share : shares_) rays += static_cast<double>(share.rays.size());
+    return rays;
+  }
+  double samples() const {
+    double samples = 0;
+    for (const Share& share : shares_) {
+      for (const TileTask& task : share.tasks) samples += static_cast<double>(task.rect.pixels()) * task.samples.size();
+    }
+    return samples;
   }
 
  private:
-  void on_every_thread(const std::function<void(int)>& work) {
-    parallel_for(static_cast<std::size_t>(threads_), threads_, [&](std::size_t index, int) {
-      prepare_render_thread();
-      work(static_cast<int>(index));
+  struct Share {
+    std::vector<TileTask> tasks;
+    std::vector<RecordedRay> rays;
+  };
+
+  // Gives out the tiles in an order that is spread over the picture, until each thread has its rays; from the start again with
+  // later samples if there are too few tiles.
+  void record(const std::vector<PixelRect>& tiles) {
+    std::size_t stride = static_cast<std::size_t>(0.618 * static_cast<double>(tiles.size())) | 1;
+    while (std::gcd(stride, tiles.size()) != 1) stride += 2;
+    std::atomic<std::size_t> turn{0};
+    on_every_thread([&](Share& share) {
+      RayQueries queries(scene_.accelerator());
+      queries.record_to(&share.rays);
+      while (share.rays.size() < kRecordedRays) {
+        const std::size_t mine = turn++;
+        const auto sample = static_cast<std::uint32_t>(kBenchSamples * (mine / tiles.size()));
+        share.tasks.push_back({tiles[mine * stride % tiles.size()], {sample, sample + kBenchSamples}, 0});
+        render_tile(scene_, integrator_, share.tasks.back(), queries, never_);
+      }
     });
   }
 
-  std::uint64_t trace_tile(RayQueries& queries) {
-    const std::uint64_t turn = turn_++;
-    const PixelRect tile = tiles_[turn % tiles_.size()];
-    const auto sample = static_cast<std::uint32_t>(kBenchSamples * (turn / tiles_.size()));
-    render_tile(scene_, integrator_, {tile, {sample, sample + kBenchSamples}, 0}, queries, never_);
-    return kBenchSamples * static_cast<std::uint64_t>(tile.pixels());
+  // Returns the seconds until all threads are done.
+  double on_every_thread(const std::function<void(Share&)>& work) {
+    const Clock::time_point start = Clock::now();
+    parallel_for(shares_.size(), static_cast<int>(shares_.size()), [&](std::size_t index, int) {
+      prepare_render_thread();
+      work(shares_[index]);
+    });
+    return seconds_since(start);
   }
 
   const Scene& scene_;
   const Integrator& integrator_;
-  int threads_;
-  std::vector<PixelRect> tiles_;
-  std::atomic<std::uint64_t> turn_{0};
+  std::vector<Share> shares_;
   std::atomic<bool> never_{false};
-  std::vector<std::vector<RecordedRay>> recorded_;
 };
 
 void bench(const BenchOptions& options) {
@@ -114,14 +125,13 @@ void bench(const BenchOptions& options) {
   const Scene scene(options.scene.read(), threads);
   const std::unique_ptr<Integrator> integrator = make_integrator("path", scene);
   PathBench path(scene, *integrator, threads);
-  path.record();
   std::vector<double> path_rates, sample_rates, embree_rates, ratios;
   for (int round = 0; round < kRounds; ++round) {
-    const auto [rays, samples] = path.trace_round();
-    path_rates.push_back(rays);
-    sample_rates.push_back(samples);
-    embree_rates.push_back(path.replay_round());
-    ratios.push_back(path_rates.back() / embree_rates.back());
+    const double path_seconds = path.trace_round(), embree_seconds = path.replay_round();
+    path_rates.push_back(path.rays() / path_seconds);
+    sample_rates.push_back(path.samples() / path_seconds);
+    embree_rates.push_back(path.rays() / embree_seconds);
+    ratios.push_back(embree_seconds / path_seconds);
   }
   const nlohmann::json result = {
       {"scene", options.scene.scene.string()},          {"threads", threads},
