@@ -32,7 +32,7 @@ PASSES_TO_A_FILM = 8
 # Weight of the newest tile in the running mean of the cost.
 COST_WEIGHT = 0.2
 # After a merge that took a second, the next one waits this many seconds: watching costs a small, fixed share.
-MERGE_PAUSE = 16.0
+MERGE_PAUSE = 32.0
 
 
 @dataclass(slots=True)
