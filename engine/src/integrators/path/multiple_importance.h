@@ -7,6 +7,7 @@
 
 #include "emitters/emitter.h"
 #include "math/ray.h"
+#include "scene/scene.h"
 
 namespace fluxfarm {
 
@@ -15,6 +16,16 @@ inline float power_heuristic(float pdf, float other_pdf) {
   if (!(pdf > 0)) return 0;
   const float ratio = other_pdf / pdf;
   return 1 / (1 + ratio * ratio);
+}
+
+// Light from outside that a ray finds whose direction was chosen with `pdf` (sr^-1; unused if next-event estimation could not have
+// found that direction: `delta`). Next-event estimation could have found that of the map, too, but never the constant one.
+inline Rgb environment_found(const Scene& scene, Vec3f direction, bool delta, float pdf) {
+  Rgb found = scene.environment().value_or(Rgb{});
+  const auto& [map, choice_probability] = scene.environment_map();
+  if (map == nullptr) return found;
+  const auto [radiance, light_pdf] = map->from(direction);
+  return found + radiance * (delta ? 1.0f : power_heuristic(pdf, light_pdf * choice_probability));
 }
 
 // The ray from a point, already moved off its surface, to one that is moved off the light. Empty: they coincide.

@@ -2,8 +2,10 @@
 
 #include <array>
 #include <limits>
+#include <memory>
 
 #include "integrators/light_history.h"
+#include "integrators/path/camera_rays.h"
 #include "integrators/path/multiple_importance.h"
 #include "integrators/path/path_vertex.h"
 #include "integrators/path/pixel_groups.h"
@@ -13,9 +15,6 @@ namespace {
 
 // Dimensions of a path: the film first, then so many for each bounce.
 enum BounceDimension : std::uint32_t { kEmitterPoint, kDirection, kEmitterChoice, kLobe, kRoulette, kBounceDimensions };
-constexpr std::uint32_t kFilmDimension = 0;
-// Counted from the other end, so that a lens moves no dimension of the paths behind it.
-constexpr std::uint32_t kLensDimension = 0xffffffffu;
 constexpr std::uint32_t dimension_of(int depth, BounceDimension use) {
   return 1 + static_cast<std::uint32_t>(depth) * kBounceDimensions + use;
 }
@@ -54,9 +53,10 @@ class PathGroup {
       sampler_.draw_2d(dimension_of(depth, kDirection), u_direction_);
       if (!scene_.emitters().empty()) sampler_.draw_2d(dimension_of(depth, kEmitterPoint), u_emitter_);
       queries_.intersect({rays_.data(), paths_}, {hits_.data(), paths_}, depth == 0);
-      // All vertices first: they do not depend on each other, so the waits for their memory overlap.
+      // All vertices first: they do not depend on each other, so the waits for their memory overlap. Made in place: copying what
+      // has just been written number by number stalls.
       for (std::size_t i = 0; i < paths_; ++i) {
-        if (hits_[i].shape != Hit::kNone) vertices_[i] = PathVertex(scene_, rays_[i], hits_[i], bsdf_spaces_[i]);
+        if (hits_[i].shape != Hit::kNone) std::construct_at(&vertices_[i], scene_, rays_[i], hits_[i], bsdf_spaces_[i]);
       }
       std::size_t alive = 0;
       lights_ = 0;
@@ -79,20 +79,11 @@ class PathGroup {
 
  private:
   void start(std::span<const CameraSample> samples, std::uint64_t seed, std::span<SampleResult> results) {
-    sampler_.clear();
-    for (const CameraSample& sample : samples) sampler_.add(seed, sample.x, sample.y, sample.index);
-    const Camera& camera = scene_.camera();
-    sampler_.draw_2d(kFilmDimension, u_direction_);
-    std::array<Vec2f, kMaxPaths>& u_lens = u_emitter_;  // not in use yet
-    if (camera.has_lens()) sampler_.draw_2d(kLensDimension, u_lens);
+    start_camera_rays(scene_, samples, seed, sampler_, rays_);
     paths_ = samples.size();
     for (std::size_t i = 0; i < paths_; ++i) {
       results[i] = {};
       path_[i] = {.result = &results[i]};
-      const Vec2f offset = scene_.pixel_filter().sample(u_direction_[i]);
-      const float x = static_cast<float>(samples[i].x) + 0.5f + offset.x;
-      const float y = static_cast<float>(samples[i].y) + 0.5f + offset.y;
-      rays_[i] = camera.has_lens() ? camera.ray(x, y, u_lens[i]) : camera.ray(x, y);
     }
   }
 
@@ -103,11 +94,14 @@ class PathGroup {
     const Hit& hit = hits_[i];
     const bool shows_emitters = depth > 0 || !method_.hide_emitters;
     if (hit.shape == Hit::kNone) {
-      if (shows_emitters) add_environment(path, ray.direction);
+      if (shows_emitters) {
+        const Rgb found = environment_found(scene_, ray.direction, path.delta, path.bsdf_pdf);
+        path.result->add(path.throughput * found, path.history.layer());
+      }
       return false;
     }
     const PathVertex& vertex = vertices_[i];
-    if (depth == 0) note_first_hit(vertex, *path.result);
+    if (depth == 0) note_first_hit(scene_.camera(), vertex, *path.result);
     if (vertex.surface->emitter != nullptr && shows_emitters) add_emission(i, vertex);
     if (depth + 1 >= max_depth_) return false;
     if (vertex.surface->has_continuous_lobe && !scene_.emitters().empty()) sample_light(i, depth, vertex);
@@ -128,13 +122,6 @@ class PathGroup {
     return true;
   }
 
-  void note_first_hit(const PathVertex& vertex, SampleResult& result) const {
-    result.hit = true;
-    result.depth = scene_.camera().depth(vertex.point.position);
-    result.normal = vertex.wo.z < 0 ? -vertex.frame.n : vertex.frame.n;
-    result.albedo = vertex.bsdf->albedo(vertex.wo);
-  }
-
   // Emission found by BSDF sampling, weighted against next-event estimation, which could have found it, too.
   void add_emission(std::size_t i, const PathVertex& vertex) {
     const Path& path = path_[i];
@@ -147,16 +134,6 @@ class PathGroup {
       weight = power_heuristic(path.bsdf_pdf, pdf);
     }
     path.result->add(path.throughput * emitted * weight, path.history.layer());
-  }
-
-  // Light from outside. Next-event estimation could have found that of the map, too, but never the constant one.
-  void add_environment(Path& path, Vec3f direction) const {
-    if (scene_.environment()) path.result->add(path.throughput * *scene_.environment(), path.history.layer());
-    const auto& [map, choice_probability] = scene_.environment_map();
-    if (map == nullptr) return;
-    const auto [radiance, pdf] = map->from(direction);
-    const float weight = path.delta ? 1.0f : power_heuristic(path.bsdf_pdf, pdf * choice_probability);
-    path.result->add(path.throughput * radiance * weight, path.history.layer());
   }
 
   // Next-event estimation: one emitter, one point of it. Leaves a shadow ray and the light that it stands for.

@@ -17,9 +17,8 @@ struct PathVertex {
 
   PathVertex() = default;
   // A textured surface has its BSDF made in `space`.
-  PathVertex(const Scene& scene, const Ray& ray, const Hit& hit, BsdfSpace& space) : surface(&scene.surface(hit.shape)) {
-    point = surface->shape->surface_point(ray, hit);
-    frame = Frame(point.shading_normal);
+  PathVertex(const Scene& scene, const Ray& ray, const Hit& hit, BsdfSpace& space)
+      : surface(&scene.surface(hit.shape)), point(surface->shape->surface_point(ray, hit)), frame(point.shading_normal) {
     if (surface->anisotropic) align(surface->shape->tangent(point, hit));
     wo = frame.to_local(-ray.direction);
     const bool back = wo.z < 0;

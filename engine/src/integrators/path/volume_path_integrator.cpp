@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "integrators/light_history.h"
+#include "integrators/path/camera_rays.h"
 #include "integrators/path/multiple_importance.h"
 #include "integrators/path/path_vertex.h"
 #include "integrators/path/pixel_groups.h"
@@ -16,9 +17,8 @@ namespace {
 
 // Dimensions of a path: the film first, then so many for each step, which ends at a surface, also a null one, or at a collision.
 enum StepDimension : std::uint32_t { kEmitterPoint, kDirection, kEmitterChoice, kLobe, kRoulette, kDistance, kStepDimensions };
-constexpr std::uint32_t kFilmDimension = 0;
-// Counted from the other end, so that they move no dimension of the steps.
-constexpr std::uint32_t kLensDimension = 0xffffffffu, kChannelDimension = 0xfffffffeu;
+// Counted from the other end, next to the lens, so that it moves no dimension of the steps.
+constexpr std::uint32_t kChannelDimension = kLensDimension - 1;
 constexpr std::uint32_t dimension_of(int step, StepDimension use) {
   return 1 + static_cast<std::uint32_t>(step) * kStepDimensions + use;
 }
@@ -81,12 +81,7 @@ class VolumePathGroup {
 
  private:
   void start(std::span<const CameraSample> samples, std::uint64_t seed, std::span<SampleResult> results) {
-    sampler_.clear();
-    for (const CameraSample& sample : samples) sampler_.add(seed, sample.x, sample.y, sample.index);
-    const Camera& camera = scene_.camera();
-    sampler_.draw_2d(kFilmDimension, u_direction_);
-    std::array<Vec2f, kMaxPaths>& u_lens = u_emitter_;  // not in use yet
-    if (camera.has_lens()) sampler_.draw_2d(kLensDimension, u_lens);
+    start_camera_rays(scene_, samples, seed, sampler_, rays_);
     paths_ = samples.size();
     for (std::size_t i = 0; i < paths_; ++i) {
       results[i] = {};
@@ -95,10 +90,6 @@ class VolumePathGroup {
       path_[i].result = &results[i];
       if (scene_.census().coloured_media)
         path_[i].channel = std::min(static_cast<int>(3 * sampler_.draw_1d(kChannelDimension, i)), 2);
-      const Vec2f offset = scene_.pixel_filter().sample(u_direction_[i]);
-      const float x = static_cast<float>(samples[i].x) + 0.5f + offset.x;
-      const float y = static_cast<float>(samples[i].y) + 0.5f + offset.y;
-      rays_[i] = camera.has_lens() ? camera.ray(x, y, u_lens[i]) : camera.ray(x, y);
       // Media begin at the near plane, as surfaces do.
       Ray& ray = rays_[i];
       ray = {ray.origin + ray.t_min * ray.direction, ray.direction, 0, ray.t_max - ray.t_min};
@@ -125,7 +116,10 @@ class VolumePathGroup {
     if (path.medium != nullptr) path.throughput *= path.channels.pass(*path.medium, hits ? hit.t : ray.t_max);
     if (path.throughput.is_black()) return false;
     if (!hits) {
-      if (shows_emitters(path)) add_environment(path, ray.direction);
+      if (shows_emitters(path)) {
+        const Rgb found = environment_found(scene_, ray.direction, path.delta, path.direction_pdf);
+        path.result->add(path.throughput * found, path.history.layer());
+      }
       return false;
     }
     const PathVertex vertex(scene_, ray, hit, bsdf_space_);
@@ -165,7 +159,7 @@ class VolumePathGroup {
 
   bool scatter_at_surface(std::size_t i, int step, const PathVertex& vertex, const Scene::Boundary& boundary) {
     VolumePath& path = path_[i];
-    if (path.depth == 0) note_first_hit(vertex, *path.result);
+    if (path.depth == 0) note_first_hit(scene_.camera(), vertex, *path.result);
     if (path.depth + 1 >= max_depth_) return false;
     if (vertex.surface->has_continuous_lobe) {
       if (const std::optional<LightChoice> light = choose_light(i, step, vertex.emitter_reference())) {
@@ -207,13 +201,6 @@ class VolumePathGroup {
 
   bool shows_emitters(const VolumePath& path) const { return path.depth > 0 || !method_.hide_emitters; }
 
-  void note_first_hit(const PathVertex& vertex, SampleResult& result) const {
-    result.hit = true;
-    result.depth = scene_.camera().depth(vertex.point.position);
-    result.normal = vertex.wo.z < 0 ? -vertex.frame.n : vertex.frame.n;
-    result.albedo = vertex.bsdf->albedo(vertex.wo);
-  }
-
   // Emission found by the last bounce, weighted against next-event estimation from there, which could have found it, too. The
   // weights leave out the chance of getting there without a collision, for both alike.
   void add_emission(const VolumePath& path, const PathVertex& vertex, const Ray& ray, const Hit& hit) const {
@@ -228,15 +215,6 @@ class VolumePathGroup {
       weight = power_heuristic(path.direction_pdf, pdf);
     }
     path.result->add(path.throughput * emitted * weight, path.history.layer());
-  }
-
-  void add_environment(const VolumePath& path, Vec3f direction) const {
-    if (scene_.environment()) path.result->add(path.throughput * *scene_.environment(), path.history.layer());
-    const auto& [map, choice_probability] = scene_.environment_map();
-    if (map == nullptr) return;
-    const auto [radiance, pdf] = map->from(direction);
-    const float weight = path.delta ? 1.0f : power_heuristic(path.direction_pdf, pdf * choice_probability);
-    path.result->add(path.throughput * radiance * weight, path.history.layer());
   }
 
   // Next-event estimation: one emitter, one point of it.
