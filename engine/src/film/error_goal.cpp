@@ -1,12 +1,12 @@
 #include "film/error_goal.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <numeric>
 
 #include "film/error_bound.h"
+#include "film/error_shares.h"
 #include "film/tile_grid.h"
 
 namespace fluxfarm {
@@ -20,13 +20,6 @@ constexpr int kCell = 4;
 
 // Below so many pixels that carry the error of a neighbourhood, a tile's own error may be that of a lucky one (a choice).
 constexpr double kFewCarriers = 64;
-// So many standard errors make a pixel differ clearly (a choice: with two, chance biases the error of an even picture).
-constexpr double kDistinct = 3;
-
-// So many standard errors are taken off a pixel at the edge of a bright one: few samples may have hit what is bright. Measured on
-// veach-mis, 128x72 at 10 %: with 0 only 3 of 10 pictures keep the goal, with 0.7 14 of 16, with 0.8 all of 24, of which 16 have
-// more than half of the error that was asked for, with 1 only 4 of 10.
-constexpr double kDoubt = 0.8;
 
 struct TileError {
   double pixels = 0;
@@ -44,75 +37,8 @@ struct TileError {
   }
 };
 
-// Every pixel's estimated share in relMSE: the mean over channels of Var(I) / (R^2 + 1e-2). I itself will not do for R: a single
-// bright sample raises it, which would hide the error that it makes, and where it is low by chance it exaggerates.
-class ErrorShares {
- public:
-  explicit ErrorShares(const Film& film) : crop_(film.crop()) {
-    estimates_.reserve(static_cast<std::size_t>(crop_.pixels()));
-    for (int y = crop_.y; y < crop_.y + crop_.height; ++y) {
-      for (int x = crop_.x; x < crop_.x + crop_.width; ++x) estimates_.push_back(film.estimate(x, y));
-    }
-  }
-
-  // (x, y) in the frame.
-  double at(int x, int y) const {
-    const PixelEstimate& pixel = estimate(x, y);
-    double share = 0;
-    for (int c = 0; c < 3; ++c) {
-      const double value = likely_value(x, y, c);
-      share += pixel.variance[c] / (value * value + 1e-2) / 3;
-    }
-    return share;
-  }
-
- private:
-  const PixelEstimate& estimate(int x, int y) const {
-    return estimates_[static_cast<std::size_t>(y - crop_.y) * crop_.width + (x - crop_.x)];
-  }
-
-  // R of one channel: the median over 3 x 3 pixels, unless the pixel is clearly darker, or brighter with a clearly bright one among
-  // them, such as a lamp of which it shows the edge.
-  double likely_value(int x, int y, int channel) const {
-    const PixelEstimate& pixel = estimate(x, y);
-    const PixelRect near = clipped(PixelRect{x - 1, y - 1, 3, 3});
-    std::array<double, 9> means{};
-    std::size_t count = 0;
-    for (int v = near.y; v < near.y + near.height; ++v) {
-      for (int u = near.x; u < near.x + near.width; ++u) means[count++] = estimate(u, v).mean[channel];
-    }
-    std::nth_element(means.begin(), means.begin() + count / 2, means.begin() + count);
-    const double around = means[count / 2], mean = pixel.mean[channel];
-    if (mean <= around) return differ(pixel.variance[channel], around, mean) ? mean : around;
-    double value = around;
-    for (int v = near.y; v < near.y + near.height; ++v) {
-      for (int u = near.x; u < near.x + near.width; ++u) {
-        // One bright sample does not move the median of the replicates.
-        const PixelEstimate& other = estimate(u, v);
-        if (differ(other.variance[channel], other.median[channel], around)) {
-          value = std::max(value, std::min(mean - kDoubt * std::sqrt(pixel.variance[channel]), other.median[channel]));
-        }
-      }
-    }
-    return value;
-  }
-
-  static bool differ(double variance, double larger, double smaller) {
-    return larger > smaller && (larger - smaller) * (larger - smaller) > kDistinct * kDistinct * variance;
-  }
-
-  PixelRect clipped(PixelRect rect) const {
-    const int left = std::max(rect.x, crop_.x), top = std::max(rect.y, crop_.y);
-    const int right = std::min(rect.x + rect.width, crop_.x + crop_.width);
-    const int bottom = std::min(rect.y + rect.height, crop_.y + crop_.height);
-    return {left, top, right - left, bottom - top};
-  }
-
-  PixelRect crop_;
-  std::vector<PixelEstimate> estimates_;
-};
-
-TileError measure(const Film& film, const ErrorShares& shares, PixelRect rect, ErrorBound& bound) {
+TileError measure(const Film& film, PixelRect rect, ErrorBound& bound) {
+  const ErrorShares shares(film, rect);
   TileError tile;
   tile.pixels = rect.pixels();
   tile.samples = film.samples(rect.x, rect.y);
@@ -205,10 +131,9 @@ Round first_round(const ErrorGoal& goal, PixelRect crop) {
 
 ErrorLook look_at(const Film& film, const ErrorGoal& goal, int number) {
   const PixelRect crop = film.crop();
-  const ErrorShares shares(film);
   ErrorBound bound;
   std::vector<TileError> tiles;
-  for (const PixelRect& rect : make_tiles(crop, kErrorTile)) tiles.push_back(measure(film, shares, rect, bound));
+  for (const PixelRect& rect : make_tiles(crop, kErrorTile)) tiles.push_back(measure(film, rect, bound));
   pool(tiles, (crop.width + kErrorTile - 1) / kErrorTile);
   ErrorLook look;
   const bool known = std::ranges::all_of(tiles, [](const TileError& tile) { return tile.samples >= 2; });
