@@ -128,7 +128,7 @@ ImageAndAlpha read_image_and_alpha(const std::filesystem::path& file, const std:
     const Channels colors = channels_of(image.header(), name);
     const std::vector<std::string>& names = image.header().channels;
     const bool bytes = image.header().sample == ImageSample::kUint8;
-    const auto behind = static_cast<std::size_t>(colors.first + colors.count);
+    const std::size_t behind = static_cast<std::size_t>(colors.first) + static_cast<std::size_t>(colors.count);
     if (behind < names.size() && names[behind] == "A")
       return bytes ? read_both<std::uint8_t>(image, colors, name) : read_both<float>(image, colors, name);
     return {bytes ? read<std::uint8_t>(image, colors, name, true) : read<float>(image, colors, name, true), std::nullopt};
