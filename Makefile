@@ -46,7 +46,8 @@ format: $(VENV)/.ready
 	$(VENV)/bin/ruff check --fix --config service/pyproject.toml service tests
 	$(VENV)/bin/ruff format --config service/pyproject.toml service tests
 
-# Ray rates against bare Embree, on outside scenes and a million triangles; and against Mitsuba 3 where PEER_PYTHON has it.
+# Ray rates against bare Embree, on outside scenes and a million triangles; a thousand emitters against ten; and Mitsuba 3 where
+# PEER_PYTHON has it.
 bench: build
 	$(PYTHON) tests/benchmarks/bench.py --out out/bench.json
 

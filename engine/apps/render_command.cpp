@@ -107,7 +107,10 @@ void render(const RenderOptions& options) {
   if (!report) return;
   nlohmann::json timeline = nlohmann::json::array();
   for (const TimelinePoint& point : result.timeline) {
-    timeline.push_back({{"seconds", point.seconds}, {"spp", point.spp}, {"error", or_null(point.error)}});
+    timeline.push_back({{"seconds", point.seconds},
+                        {"spp", point.spp},
+                        {"error", or_null(point.error)},
+                        {"expected_spp", or_null(point.expected_spp)}});
   }
   const nlohmann::json figures = {
       {"engine", engine_build_id()},

@@ -1,4 +1,5 @@
-"""Speed with its error: path tracing against bare Embree on its own rays, and against Mitsuba 3 at equal error.
+"""Speed with its error: path tracing against bare Embree on its own rays, against Mitsuba 3 at equal error, and with a
+thousand emitters against ten.
 
     .venv/bin/python tests/benchmarks/bench.py --out out/bench.json
 
@@ -17,6 +18,7 @@ import numpy as np
 import OpenEXR
 
 sys.path.insert(0, str(Path(__file__).parent))
+import many_lights
 import million
 
 ROOT = Path(__file__).parents[2]
@@ -24,6 +26,9 @@ ENGINE = Path(sys.executable).with_name("fluxfarm-engine")
 SCENES_DATA = Path(os.environ.get("FLUXFARM_SCENES_DATA", ROOT.parent / "shared" / "scenes-data"))
 SIDE = 256
 THREADS = "2"
+# A thousand emitters may cost so many times the time to equal error of ten.
+MOST_FOR_A_THOUSAND = 2.0
+LIGHTS_SPP = 64
 
 
 def scenes(out: Path) -> dict[str, Path]:
@@ -77,6 +82,19 @@ def against_mitsuba(name: str, scene: Path, out: Path, peer: str, spp: int) -> d
     return result
 
 
+def thousand_emitters(out: Path) -> dict[str, Any]:
+    """The same hall lit by ten lamps and by a thousand: time to equal error of the second over that of the first."""
+    result: dict[str, Any] = {"spp": LIGHTS_SPP}
+    for count in (10, 1000):
+        scene = many_lights.write(out.parent / f"lights-{count}", count)
+        # Its own error adds an eighth to each of the two.
+        reference, _ = render(scene, out, 8 * LIGHTS_SPP, 999)
+        images = [render(scene, out, LIGHTS_SPP, seed) for seed in range(3)]
+        result[str(count)] = summary([(rel_mse(image, reference), seconds) for image, seconds in images], LIGHTS_SPP)
+    ratio = result["1000"]["seconds_times_error"] / result["10"]["seconds_times_error"]
+    return {**result, "time_to_equal_error_ratio": ratio, "met": ratio <= MOST_FOR_A_THOUSAND}
+
+
 def summary(runs: list[tuple[float, float]], spp: int) -> dict[str, float]:
     error, seconds = float(np.median([e for e, _ in runs])), float(np.median([s for _, s in runs]))
     # Error falls as 1 / spp or faster, so the time to a given error is in proportion to the product.
@@ -114,6 +132,14 @@ def main() -> None:
                 print(f"  {renderer}: {row['samples_per_second'] / 1e6:.2f} M samples/s, relMSE {row['rel_mse']:.3g}")
             ratio = results[name]["peer"]["our_time_to_equal_error_over_mitsubas"]
             print(f"  time to equal relMSE over Mitsuba's best sampler: {ratio:.2f}")
+    lights = results["many-lights"] = thousand_emitters(options.out.resolve())
+    for count in ("10", "1000"):
+        row = lights[count]
+        print(f"{count} emitters: relMSE {row['rel_mse']:.3g} in {row['seconds']:.2f} s at {LIGHTS_SPP} spp")
+    print(
+        f"time to equal error, a thousand emitters over ten: {lights['time_to_equal_error_ratio']:.2f}, "
+        f"goal at most {MOST_FOR_A_THOUSAND:g}: {'met' if lights['met'] else 'missed'}"
+    )
     options.out.write_text(json.dumps(results, indent=2) + "\n")
     print(options.out)
 

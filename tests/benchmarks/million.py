@@ -3,21 +3,11 @@
 from pathlib import Path
 
 import numpy as np
+from scene_head import scene_head
 
 SIDE = 708  # quads along each side: 2 x 708^2 = 1,002,528 triangles
 
-SCENE = """<scene version="3.0.0">
-  <integrator type="path"/>
-  <sensor type="perspective">
-    <float name="fov" value="40"/>
-    <transform name="to_world"><lookat origin="0, 2.2, 4.2" target="0, 0.2, 0" up="0, 1, 0"/></transform>
-    <film type="hdrfilm">
-      <integer name="width" value="256"/>
-      <integer name="height" value="256"/>
-      <rfilter type="box"/>
-    </film>
-  </sensor>
-  <emitter type="constant"><rgb name="radiance" value="0.4, 0.5, 0.7"/></emitter>
+HILLS = """  <emitter type="constant"><rgb name="radiance" value="0.4, 0.5, 0.7"/></emitter>
   <shape type="sphere">
     <point name="center" x="2" y="3" z="1"/>
     <float name="radius" value="0.3"/>
@@ -60,5 +50,5 @@ def write(folder: Path) -> Path:
     )
     (folder / "hills.ply").write_bytes(header.encode() + vertices.tobytes() + faces.tobytes())
     scene = folder / "scene.xml"
-    scene.write_text(SCENE)
+    scene.write_text(scene_head('<integrator type="path"/>', 40, "0, 2.2, 4.2", "0, 0.2, 0") + HILLS)
     return scene

@@ -115,6 +115,12 @@ def test_service_imports_follow_the_arrows() -> None:
     assert service_breaches(ROOT / "service" / "src" / "fluxfarm") == []
 
 
+def write_files(folder: Path, files: dict[str, str]) -> None:
+    for name, text in files.items():
+        (folder / name).parent.mkdir(parents=True, exist_ok=True)
+        (folder / name).write_text(text)
+
+
 def test_forbidden_includes_and_imports_are_found(tmp_path: Path) -> None:
     engine = {
         "math/a.h": '#include "film/film.h"\n',
@@ -124,9 +130,7 @@ def test_forbidden_includes_and_imports_are_found(tmp_path: Path) -> None:
         "emitters/e.h": '#include "materials/bsdf.h"\n',
         "math/g.h": '#  include "../film/film.h"\n',
     }
-    for name, text in engine.items():
-        (tmp_path / "src" / name).parent.mkdir(parents=True, exist_ok=True)
-        (tmp_path / "src" / name).write_text(text)
+    write_files(tmp_path / "src", engine)
     (tmp_path / "apps").mkdir()
     (tmp_path / "apps" / "f.cpp").write_text('#include "worker/plan.h"\n#include <pugixml.hpp>\n')
     assert engine_breaches(tmp_path / "src", tmp_path / "apps") == [
@@ -144,9 +148,7 @@ def test_forbidden_includes_and_imports_are_found(tmp_path: Path) -> None:
         "domain/pass_.py": "from ..adapters.blobs import Blobs\nfrom .job import Job\n",
         "cli.py": "from fluxfarm.adapters.protocol import engine_pb2\nfrom fluxfarm.adapters import blobs\n",
     }
-    for name, text in service.items():
-        (tmp_path / "service" / name).parent.mkdir(parents=True, exist_ok=True)
-        (tmp_path / "service" / name).write_text(text)
+    write_files(tmp_path / "service", service)
     assert service_breaches(tmp_path / "service") == [
         "api/routes.py: fluxfarm.adapters",
         "cli.py: fluxfarm.adapters.protocol.engine_pb2",

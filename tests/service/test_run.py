@@ -4,13 +4,11 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-import pytest
 from test_ledger import FACTS, GRID, REQUEST, REVISION
 
 from fluxfarm.domain.goal import Goal, Limits
 from fluxfarm.domain.job import JobState
 from fluxfarm.domain.leases import Decision, SceneRef
-from fluxfarm.domain.progress import samples_expected
 from fluxfarm.domain.records import JobRecord, OpenedPass, StoredTile, Unmerged
 from fluxfarm.domain.schedule import Round, SampleRange
 from fluxfarm.orchestrator.run import MERGE_PAUSE, PASSES_TO_A_FILM, JobRun
@@ -159,15 +157,3 @@ def test_restart_in_a_round_goes_on_with_its_tiles() -> None:
     opened = not_begun.open_pass(0.0)
     assert opened is not None
     assert (opened.samples, opened.tiles) == (SampleRange(16, 32), (1, 3))
-
-
-def test_expected_samples_follow_the_fall_of_the_error() -> None:
-    pixels, base = 100, REVISION
-    first = replace(base, mean_samples=16.0, error_bound=0.16, samples_expected=25_600.0)
-    assert samples_expected(None, first, pixels) == 25_600
-    # Half of the error with twice the samples: what is left falls as fast.
-    second = replace(base, mean_samples=32.0, error_bound=0.08, samples_expected=12_800.0)
-    assert samples_expected(first, second, pixels) == pytest.approx(3200 * (12_800 / 3200) ** 0.5)
-    # Random samples gain no more than the engine takes for granted, and noise in the estimate cannot make it worse.
-    third = replace(base, mean_samples=64.0, error_bound=0.09, samples_expected=12_800.0)
-    assert samples_expected(second, third, pixels) == pytest.approx(12_800)

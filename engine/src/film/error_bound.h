@@ -10,8 +10,6 @@
 // struck any of them, and in the pixel that it did strike Q and V rise together.
 #pragma once
 
-#include <cstdint>
-
 namespace fluxfarm {
 
 class ErrorBound {
@@ -20,16 +18,28 @@ class ErrorBound {
   void add(double relative_variance, int pixels) {
     sum_ += relative_variance;
     squares_ += relative_variance * relative_variance / pixels;
-    pixels_ += static_cast<std::uint64_t>(pixels);
+    pixels_ += pixels;
+  }
+  // All cells of another part of the picture.
+  void add(const ErrorBound& part) {
+    sum_ += part.sum_;
+    squares_ += part.squares_;
+    pixels_ += part.pixels_;
+  }
+  // As if more samples had left that much of each cell's variance.
+  void scale(double left) {
+    sum_ *= left;
+    squares_ *= left * left;
   }
 
   // After at least one cell: the estimate of relMSE, and the upper bound of sqrt(relMSE) at look `number` (1, 2, ...).
-  double estimate() const { return sum_ / static_cast<double>(pixels_); }
+  double estimate() const { return sum_ / pixels_; }
   double at(int number) const;
+  double pixels() const { return pixels_; }
+  double squares() const { return squares_; }  // sum over the cells of relative_variance^2 / pixels
 
  private:
-  double sum_ = 0, squares_ = 0;
-  std::uint64_t pixels_ = 0;
+  double sum_ = 0, squares_ = 0, pixels_ = 0;
 };
 
 // z such that a standard Gaussian exceeds it with probability p, 0 < p <= 0.5.

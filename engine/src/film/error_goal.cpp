@@ -1,12 +1,12 @@
 #include "film/error_goal.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <numeric>
 
 #include "film/error_bound.h"
+#include "film/error_shares.h"
 #include "film/tile_grid.h"
 
 namespace fluxfarm {
@@ -20,112 +20,41 @@ constexpr int kCell = 4;
 
 // Below so many pixels that carry the error of a neighbourhood, a tile's own error may be that of a lucky one (a choice).
 constexpr double kFewCarriers = 64;
-// So many standard errors make a pixel differ clearly (a choice: with two, chance biases the error of an even picture).
-constexpr double kDistinct = 3;
 
-// So many standard errors are taken off a pixel at the edge of a bright one: few samples may have hit what is bright. Measured on
-// veach-mis, 128x72 at 10 %: with 0 only 3 of 10 pictures keep the goal, with 0.7 14 of 16, with 0.8 all of 24, of which 16 have
-// more than half of the error that was asked for, with 1 only 4 of 10.
-constexpr double kDoubt = 0.8;
+// Variances fall as samples^-fall: as 1 / samples where these are random, and faster where stratification helps and the guess of
+// the true values gets better. Measured between looks on cornell, cornell-glass, cornell-box and furnace: 1.0 to 1.3. On veach-mis,
+// where later samples find brighter paths, it goes down to 0.
+constexpr double kSlowestFall = 1.0, kFastestFall = 1.3;
 
 struct TileError {
-  double pixels = 0;
   std::uint32_t samples = 0;  // of each pixel
-  double own = 0;             // mean share of relMSE
-  double squares = 0;         // sum over the cells of (sum of shares)^2 / pixels
-  double pooled = 0;          // the share that the neighbours make likely
+  ErrorBound cells;
+  double pooled = 0;  // the mean share of relMSE that the neighbours make likely
 
-  double deciding() const { return std::max(own, pooled); }
-  void take_round(std::uint32_t end) {
-    const double left = static_cast<double>(samples) / end;
-    own *= left;
-    pooled *= left;
-    samples = end;
-  }
+  double own() const { return cells.estimate(); }
+  double pixels() const { return cells.pixels(); }
+  double deciding() const { return std::max(own(), pooled); }
 };
 
-// Every pixel's estimated share in relMSE: the mean over channels of Var(I) / (R^2 + 1e-2). I itself will not do for R: a single
-// bright sample raises it, which would hide the error that it makes, and where it is low by chance it exaggerates.
-class ErrorShares {
- public:
-  explicit ErrorShares(const Film& film) : crop_(film.crop()) {
-    estimates_.reserve(static_cast<std::size_t>(crop_.pixels()));
-    for (int y = crop_.y; y < crop_.y + crop_.height; ++y) {
-      for (int x = crop_.x; x < crop_.x + crop_.width; ++x) estimates_.push_back(film.estimate(x, y));
-    }
-  }
-
-  // (x, y) in the frame.
-  double at(int x, int y) const {
-    const PixelEstimate& pixel = estimate(x, y);
-    double share = 0;
-    for (int c = 0; c < 3; ++c) {
-      const double value = likely_value(x, y, c);
-      share += pixel.variance[c] / (value * value + 1e-2) / 3;
-    }
-    return share;
-  }
-
- private:
-  const PixelEstimate& estimate(int x, int y) const {
-    return estimates_[static_cast<std::size_t>(y - crop_.y) * crop_.width + (x - crop_.x)];
-  }
-
-  // R of one channel: the median over 3 x 3 pixels, unless the pixel is clearly darker, or brighter with a clearly bright one among
-  // them, such as a lamp of which it shows the edge.
-  double likely_value(int x, int y, int channel) const {
-    const PixelEstimate& pixel = estimate(x, y);
-    const PixelRect near = clipped(PixelRect{x - 1, y - 1, 3, 3});
-    std::array<double, 9> means{};
-    std::size_t count = 0;
-    for (int v = near.y; v < near.y + near.height; ++v) {
-      for (int u = near.x; u < near.x + near.width; ++u) means[count++] = estimate(u, v).mean[channel];
-    }
-    std::nth_element(means.begin(), means.begin() + count / 2, means.begin() + count);
-    const double around = means[count / 2], mean = pixel.mean[channel];
-    if (mean <= around) return differ(pixel.variance[channel], around, mean) ? mean : around;
-    double value = around;
-    for (int v = near.y; v < near.y + near.height; ++v) {
-      for (int u = near.x; u < near.x + near.width; ++u) {
-        // One bright sample does not move the median of the replicates.
-        const PixelEstimate& other = estimate(u, v);
-        if (differ(other.variance[channel], other.median[channel], around)) {
-          value = std::max(value, std::min(mean - kDoubt * std::sqrt(pixel.variance[channel]), other.median[channel]));
-        }
-      }
-    }
-    return value;
-  }
-
-  static bool differ(double variance, double larger, double smaller) {
-    return larger > smaller && (larger - smaller) * (larger - smaller) > kDistinct * kDistinct * variance;
-  }
-
-  PixelRect clipped(PixelRect rect) const {
-    const int left = std::max(rect.x, crop_.x), top = std::max(rect.y, crop_.y);
-    const int right = std::min(rect.x + rect.width, crop_.x + crop_.width);
-    const int bottom = std::min(rect.y + rect.height, crop_.y + crop_.height);
-    return {left, top, right - left, bottom - top};
-  }
-
-  PixelRect crop_;
-  std::vector<PixelEstimate> estimates_;
-};
-
-TileError measure(const Film& film, const ErrorShares& shares, PixelRect rect, ErrorBound& bound) {
+TileError measure(const Film& film, PixelRect rect) {
+  const ErrorShares shares(film, rect);
   TileError tile;
-  tile.pixels = rect.pixels();
   tile.samples = film.samples(rect.x, rect.y);
   for (const PixelRect& cell : make_tiles(rect, kCell)) {
     double share = 0;
     for (int y = cell.y; y < cell.y + cell.height; ++y) {
       for (int x = cell.x; x < cell.x + cell.width; ++x) share += shares.at(x, y);
     }
-    bound.add(share, cell.pixels());
-    tile.own += share / tile.pixels;
-    tile.squares += share * share / cell.pixels();
+    tile.cells.add(share, cell.pixels());
   }
   return tile;
+}
+
+// Upper bound of sqrt(relMSE) of the whole picture at look `number`.
+double error_bound(const std::vector<TileError>& tiles, int number) {
+  ErrorBound picture;
+  for (const TileError& tile : tiles) picture.add(tile.cells);
+  return picture.at(number);
 }
 
 void pool(std::vector<TileError>& tiles, int columns) {
@@ -137,9 +66,9 @@ void pool(std::vector<TileError>& tiles, int columns) {
         for (int c = std::max(column - 1, 0); c <= std::min(column + 1, columns - 1); ++c) {
           const TileError& other = tiles[static_cast<std::size_t>(r) * columns + c];
           const double samples = other.samples;
-          sum += other.own * samples * other.pixels;
-          squares += other.squares * samples * samples;
-          pixels += other.pixels;
+          sum += other.own() * samples * other.pixels();
+          squares += other.cells.squares() * samples * samples;
+          pixels += other.pixels();
         }
       }
       if (squares == 0) continue;
@@ -170,28 +99,31 @@ std::optional<Round> choose_round(const std::vector<TileError>& tiles, const Err
   return round;
 }
 
-// Carries the rounds out on paper.
-double predict_samples(std::vector<TileError> tiles, const ErrorGoal& goal, double bound, double estimate) {
-  const double margin = estimate > 0 && std::isfinite(bound) ? bound * bound / estimate : 1;
-  double samples = 0, pixels = 0;
-  for (const TileError& tile : tiles) {
-    samples += tile.pixels * tile.samples;
-    pixels += tile.pixels;
-  }
-  const auto reached = [&] {
-    const double sum =
-        std::accumulate(tiles.begin(), tiles.end(), 0.0, [](double s, const TileError& t) { return s + t.own * t.pixels; });
-    return margin * sum / pixels <= goal.rel_error * goal.rel_error;
-  };
-  while (!reached()) {
+// Carries the rounds after look `number` out on paper: camera samples of the whole picture when its bound meets the goal, if
+// variances fall as samples^-fall.
+double samples_in_all(std::vector<TileError> tiles, const ErrorGoal& goal, int number, double fall) {
+  double samples = 0;
+  for (const TileError& tile : tiles) samples += tile.pixels() * tile.samples;
+  while (error_bound(tiles, number) > goal.rel_error) {
     const std::optional<Round> round = choose_round(tiles, goal);
     if (!round) break;
+    const double left = std::pow(static_cast<double>(round->samples.begin) / round->samples.end, fall);
     for (const std::uint32_t index : round->tiles) {
-      samples += tiles[index].pixels * round->samples.size();
-      tiles[index].take_round(round->samples.end);
+      TileError& tile = tiles[index];
+      samples += tile.pixels() * round->samples.size();
+      tile.samples = round->samples.end;
+      tile.cells.scale(left);
+      tile.pooled *= left;
     }
+    ++number;
   }
   return samples;
+}
+
+// Rounds double samples, so a percent of error may decide on a whole one. Between the two outcomes lies what is wrong by the
+// smallest factor whichever comes.
+double predict_samples(const std::vector<TileError>& tiles, const ErrorGoal& goal, int number) {
+  return std::sqrt(samples_in_all(tiles, goal, number, kSlowestFall) * samples_in_all(tiles, goal, number, kFastestFall));
 }
 
 }  // namespace
@@ -205,16 +137,14 @@ Round first_round(const ErrorGoal& goal, PixelRect crop) {
 
 ErrorLook look_at(const Film& film, const ErrorGoal& goal, int number) {
   const PixelRect crop = film.crop();
-  const ErrorShares shares(film);
-  ErrorBound bound;
   std::vector<TileError> tiles;
-  for (const PixelRect& rect : make_tiles(crop, kErrorTile)) tiles.push_back(measure(film, shares, rect, bound));
+  for (const PixelRect& rect : make_tiles(crop, kErrorTile)) tiles.push_back(measure(film, rect));
   pool(tiles, (crop.width + kErrorTile - 1) / kErrorTile);
   ErrorLook look;
   const bool known = std::ranges::all_of(tiles, [](const TileError& tile) { return tile.samples >= 2; });
-  look.bound = known ? bound.at(number) : std::numeric_limits<double>::infinity();
+  look.bound = known ? error_bound(tiles, number) : std::numeric_limits<double>::infinity();
   if (look.bound > goal.rel_error) look.next = choose_round(tiles, goal);
-  look.samples = predict_samples(std::move(tiles), goal, look.bound, bound.estimate());
+  look.samples = predict_samples(tiles, goal, number);
   return look;
 }
 

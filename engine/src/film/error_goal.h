@@ -40,7 +40,7 @@ Round first_round(const ErrorGoal& goal, PixelRect crop);
 struct ErrorLook {
   double bound = 0;           // of sqrt(relMSE), with 95 % confidence over all looks; infinite below two samples
   std::optional<Round> next;  // nothing: done, or no tile may take more samples
-  double samples = 0;         // camera samples of the whole picture when it will be done, if variances fall as 1 / samples
+  double samples = 0;         // camera samples of the whole picture when it will be done, as far as can be told
 };
 
 // The decision after round `number` (1, 2, ...).

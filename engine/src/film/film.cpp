@@ -57,14 +57,16 @@ PixelMean pixel_mean(const double radiance[kFilmReplicates][3], std::uint32_t sa
   return result;
 }
 
-// Median of the replicates' means of one channel.
-double replicate_median(const double radiance[kFilmReplicates][3], std::uint32_t samples, int channel) {
+// Median of the replicates' means, by channels.
+Lanes replicate_median(const double radiance[kFilmReplicates][3], std::uint32_t samples) {
   const std::uint32_t replicates = std::min(samples, kFilmReplicates);
-  if (replicates == 0) return 0;
-  std::array<double, kFilmReplicates> means;
-  for (std::uint32_t r = 0; r < replicates; ++r) means[r] = radiance[r][channel] / replicate_samples(samples, r);
-  std::nth_element(means.begin(), means.begin() + replicates / 2, means.begin() + replicates);
-  return means[replicates / 2];
+  if (replicates == 0) return {};
+  std::array<Lanes, kFilmReplicates> means = {};
+  for (std::uint32_t r = 0; r < replicates; ++r) {
+    const double count = replicate_samples(samples, r);
+    for (std::size_t c = 0; c < 3; ++c) means[r][c] = static_cast<float>(radiance[r][c] / count);
+  }
+  return median(means, replicates);
 }
 
 template <typename T>
@@ -159,12 +161,12 @@ FilmSummary Film::summary() const {
 PixelEstimate Film::estimate(int x, int y) const {
   const Pixel& p = pixel(x, y);
   const PixelMean m = pixel_mean(p.radiance, p.samples);
-  PixelEstimate estimate{};
-  for (int c = 0; c < 3; ++c) {
-    estimate.mean[c] = m.mean[c];
-    estimate.variance[c] = m.variance[c];
-    estimate.median[c] = replicate_median(p.radiance, p.samples, c);
+  PixelEstimate estimate;
+  for (std::size_t c = 0; c < 3; ++c) {
+    estimate.mean[c] = static_cast<float>(m.mean[c]);
+    estimate.standard_error[c] = static_cast<float>(std::sqrt(m.variance[c]));
   }
+  estimate.median = replicate_median(p.radiance, p.samples);
   return estimate;
 }
 

@@ -17,6 +17,7 @@
 #include "film/light_layer.h"
 #include "film/pixel_rect.h"
 #include "film/tile_sums.h"
+#include "math/median.h"
 #include "math/rgb.h"
 
 namespace fluxfarm {
@@ -40,10 +41,11 @@ struct ImageInfo {
   std::uint64_t seed = 0;
 };
 
+// Lanes: R G B and nothing.
 struct PixelEstimate {
-  double mean[3];
-  double variance[3];  // of the mean
-  double median[3];    // of the replicates' means
+  Lanes mean = {};
+  Lanes standard_error = {};  // of the mean
+  Lanes median = {};          // of the replicates' means
 };
 
 class Film {
@@ -61,7 +63,7 @@ class Film {
   void merge(const TileSums& tile);
 
   FilmSummary summary() const;
-  // The pixel at (x, y) of the frame, R G B. No variance below two replicates.
+  // The pixel at (x, y) of the frame, R G B. No standard error below two replicates.
   PixelEstimate estimate(int x, int y) const;
   std::uint32_t samples(int x, int y) const { return pixel(x, y).samples; }
   // Layers R G B, the light layers, albedo.*, N.*, Z, error.noise, samples of `rect` (inside the crop), with header attributes.

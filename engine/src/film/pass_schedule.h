@@ -1,7 +1,8 @@
 // Which samples each progressive pass takes: 1, 1, 2, 4, ... doubling the total up to a ceiling a pass.
 //
 // A pass is the unit in which sums are rounded and added, so the schedule is part of what makes pixels reproducible: engine and
-// service use the same one (service: domain/passes.py; a contract test compares the two).
+// service use the same one (service: domain/schedule.py; tests/contract/test_same_numbers.py compares the ceiling,
+// tests/render/test_same_bits.py what comes of it).
 #pragma once
 
 #include <algorithm>

@@ -65,38 +65,42 @@ void GltfTextures::warn_once(const std::string& warning) {
 }
 
 std::shared_ptr<const TextureImage> GltfTextures::image(std::size_t index, GltfChannels channels) {
-  if (const auto known = images_.find({index, channels}); known != images_.end()) return known->second;
-  const GltfObject object = file_.at("images", index);
-  std::shared_ptr<const TextureImage> image = images_[{index, channels}] = decoded(object, channels);
-  if (image == nullptr) return image;
-  pixels_ += static_cast<std::size_t>(image->width()) * static_cast<std::size_t>(image->height());
-  if (pixels_ > kMaxTexturePixels) {
-    throw SceneError(object.place(), "with this image the textures of the file have " + std::to_string(pixels_) +
-                                         " pixels, expected at most " + std::to_string(kMaxTexturePixels));
-  }
-  return image;
+  if (!images_.contains({index, channels})) decode(index, channels);
+  return images_.at({index, channels});
 }
 
-std::shared_ptr<const TextureImage> GltfTextures::decoded(const GltfObject& image, GltfChannels channels) {
-  const auto read = [&](const std::filesystem::path& path, const std::string& name) -> std::shared_ptr<const TextureImage> {
-    if (channels != GltfChannels::kAlpha)
-      return std::make_shared<const TextureImage>(read_image(path, name, channels == GltfChannels::kNumbers));
-    std::optional<TextureImage> alpha = read_alpha(path, name);
-    return alpha ? std::make_shared<const TextureImage>(std::move(*alpha)) : nullptr;
-  };
+void GltfTextures::decode(std::size_t index, GltfChannels channels) {
+  const GltfObject image = file_.at("images", index);
   if (image.has("uri") == image.has("bufferView"))
     throw SceneError(image.place(), "has both or neither of uri and bufferView, expected one of them");
+  const std::string uri = image.text("uri", "");
   if (image.has("bufferView")) {
     const MemoryFile memory(file_.buffer_view(image.required_index("bufferView", "bufferViews", file_.size("bufferViews"))));
-    return read(memory.path(), image.place());
-  }
-  const std::string uri = image.text("uri", "");
-  if (is_data_uri(uri)) {
+    decode(index, channels, memory.path(), image.place());
+  } else if (is_data_uri(uri)) {
     const MemoryFile memory(data_uri_bytes(uri, image.place() + ".uri"));
-    return read(memory.path(), image.place());
+    decode(index, channels, memory.path(), image.place());
+  } else {
+    const std::filesystem::path file = file_.find(uri, image.place() + ".uri");
+    decode(index, channels, file, image.place() + " (" + file_of_uri(uri, image.place()) + ")");
   }
-  const std::filesystem::path file = file_.find(uri, image.place() + ".uri");
-  return read(file, image.place() + " (" + file_of_uri(uri, image.place()) + ")");
+  const TextureImage& texels = *images_.at({index, channels == GltfChannels::kAlpha ? GltfChannels::kColors : channels});
+  pixels_ += static_cast<std::size_t>(texels.width()) * static_cast<std::size_t>(texels.height());
+  if (pixels_ > kMaxTexturePixels) {
+    throw SceneError(image.place(), "with this image the textures of the file have " + std::to_string(pixels_) +
+                                        " pixels, expected at most " + std::to_string(kMaxTexturePixels));
+  }
+}
+
+void GltfTextures::decode(std::size_t index, GltfChannels channels, const std::filesystem::path& file, const std::string& name) {
+  const auto keep = [&](GltfChannels of, TextureImage&& texels) {
+    images_[{index, of}] = std::make_shared<const TextureImage>(std::move(texels));
+  };
+  if (channels == GltfChannels::kNumbers) return keep(channels, read_image(file, name, true));
+  ImageAndAlpha both = read_image_and_alpha(file, name);
+  keep(GltfChannels::kColors, std::move(both.colors));
+  images_[{index, GltfChannels::kAlpha}] = nullptr;
+  if (both.alpha) keep(GltfChannels::kAlpha, std::move(*both.alpha));
 }
 
 Rgb GltfTextures::mean(int texture) const {

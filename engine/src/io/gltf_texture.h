@@ -1,10 +1,13 @@
 // Textures of a glTF file: images beside it, in its buffers or in data URIs, decoded by read_image when a material shows them.
 #pragma once
 
+#include <filesystem>
 #include <map>
 #include <memory>
 #include <optional>
 #include <set>
+#include <string>
+#include <utility>
 
 #include "io/gltf_file.h"
 #include "textures/texture_description.h"
@@ -33,7 +36,9 @@ class GltfTextures {
 
  private:
   std::shared_ptr<const TextureImage> image(std::size_t index, GltfChannels channels);
-  std::shared_ptr<const TextureImage> decoded(const GltfObject& image, GltfChannels channels);
+  // Colours and alpha come from one decoding, and both are kept.
+  void decode(std::size_t index, GltfChannels channels);
+  void decode(std::size_t index, GltfChannels channels, const std::filesystem::path& file, const std::string& name);
   void warn_once(const std::string& warning);
   void read_sampler(const GltfObject& texture, BitmapDescription& bitmap);
 

@@ -50,21 +50,44 @@ void check_reflectances(const std::vector<float>& values, std::size_t width, std
                              number_text(static_cast<double>(*wrong)) + ", expected numbers in [0, 1]: a reflectance");
 }
 
-// These channels of the image. `srgb`: integers are encoded so.
-TextureImage read(ImageFile& file, Channels channels, const std::string& name, bool srgb) {
+template <typename T>
+std::vector<T> decode(ImageFile& file, Channels channels) {
   const ImageHeader& header = file.header();
-  const int width = static_cast<int>(header.width), height = static_cast<int>(header.height);
-  const std::size_t values = static_cast<std::size_t>(header.width * header.height) * static_cast<std::size_t>(channels.count);
-  if (header.sample == ImageSample::kUint8) {
-    std::vector<std::uint8_t> texels(values);
-    file.read(channels.first, channels.count, texels.data());
-    return {width, height, channels.count, std::move(texels), srgb};
-  }
-  std::vector<float> texels(values);
+  std::vector<T> texels(static_cast<std::size_t>(header.width * header.height) * static_cast<std::size_t>(channels.count));
   file.read(channels.first, channels.count, texels.data());
-  check_reflectances(texels, static_cast<std::size_t>(width), static_cast<std::size_t>(channels.count), name);
+  return texels;
+}
+
+// `srgb`: integers are encoded so.
+TextureImage to_image(std::vector<std::uint8_t> texels, int channels, const ImageHeader& header, const std::string&, bool srgb) {
+  return {static_cast<int>(header.width), static_cast<int>(header.height), channels, std::move(texels), srgb};
+}
+
+TextureImage to_image(std::vector<float> texels, int channels, const ImageHeader& header, const std::string& name, bool srgb) {
+  check_reflectances(texels, static_cast<std::size_t>(header.width), static_cast<std::size_t>(channels), name);
   if (header.sample == ImageSample::kUint16 && srgb) std::transform(texels.begin(), texels.end(), texels.begin(), srgb_to_linear);
-  return {width, height, channels.count, std::move(texels)};
+  return {static_cast<int>(header.width), static_cast<int>(header.height), channels, std::move(texels)};
+}
+
+template <typename T>
+TextureImage read(ImageFile& file, Channels channels, const std::string& name, bool srgb) {
+  return to_image(decode<T>(file, channels), channels.count, file.header(), name, srgb);
+}
+
+// Alpha stands behind the colours.
+template <typename T>
+ImageAndAlpha read_both(ImageFile& file, Channels colors, const std::string& name) {
+  const std::vector<T> both = decode<T>(file, {colors.first, colors.count + 1});
+  const auto count = static_cast<std::size_t>(colors.count);
+  std::vector<T> color_texels, alpha_texels;
+  color_texels.reserve(both.size() / (count + 1) * count);
+  alpha_texels.reserve(both.size() / (count + 1));
+  for (auto texel = both.begin(); texel != both.end(); texel += colors.count + 1) {
+    color_texels.insert(color_texels.end(), texel, texel + colors.count);
+    alpha_texels.push_back(texel[colors.count]);
+  }
+  return {to_image(std::move(color_texels), colors.count, file.header(), name, true),
+          to_image(std::move(alpha_texels), 1, file.header(), name, false)};
 }
 
 // What `use` makes of the image in the file, whose size was checked.
@@ -93,15 +116,22 @@ auto with_image(const std::filesystem::path& file, const std::string& name, cons
 }  // namespace
 
 TextureImage read_image(const std::filesystem::path& file, const std::string& name, bool raw) {
-  return with_image(file, name, [&](ImageFile& image) { return read(image, channels_of(image.header(), name), name, !raw); });
+  return with_image(file, name, [&](ImageFile& image) {
+    const Channels channels = channels_of(image.header(), name);
+    const bool bytes = image.header().sample == ImageSample::kUint8;
+    return bytes ? read<std::uint8_t>(image, channels, name, !raw) : read<float>(image, channels, name, !raw);
+  });
 }
 
-std::optional<TextureImage> read_alpha(const std::filesystem::path& file, const std::string& name) {
-  return with_image(file, name, [&](ImageFile& image) -> std::optional<TextureImage> {
+ImageAndAlpha read_image_and_alpha(const std::filesystem::path& file, const std::string& name) {
+  return with_image(file, name, [&](ImageFile& image) -> ImageAndAlpha {
+    const Channels colors = channels_of(image.header(), name);
     const std::vector<std::string>& names = image.header().channels;
-    const auto alpha = std::find(names.begin(), names.end(), "A");
-    if (alpha == names.end()) return std::nullopt;
-    return read(image, {static_cast<int>(alpha - names.begin()), 1}, name, false);
+    const bool bytes = image.header().sample == ImageSample::kUint8;
+    const std::size_t behind = static_cast<std::size_t>(colors.first) + static_cast<std::size_t>(colors.count);
+    if (behind < names.size() && names[behind] == "A")
+      return bytes ? read_both<std::uint8_t>(image, colors, name) : read_both<float>(image, colors, name);
+    return {bytes ? read<std::uint8_t>(image, colors, name, true) : read<float>(image, colors, name, true), std::nullopt};
   });
 }
 

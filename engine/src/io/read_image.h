@@ -17,7 +17,12 @@ namespace fluxfarm {
 // a number. ResourceError if libfluxfarm-images.so is not beside the engine.
 TextureImage read_image(const std::filesystem::path& file, const std::string& name, bool raw);
 
-// The alpha channel of such an image as a grey one, as stored; nothing if the image has none. Throws as read_image().
-std::optional<TextureImage> read_alpha(const std::filesystem::path& file, const std::string& name);
+struct ImageAndAlpha {
+  TextureImage colors;
+  std::optional<TextureImage> alpha;  // grey, as stored; nothing if the image has none
+};
+
+// The same with the alpha channel, from one decoding; colours are not raw. Throws as read_image().
+ImageAndAlpha read_image_and_alpha(const std::filesystem::path& file, const std::string& name);
 
 }  // namespace fluxfarm

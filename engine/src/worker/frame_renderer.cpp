@@ -59,8 +59,12 @@ FrameResult render_frame(const Scene& scene, const Integrator& integrator, const
       done = pass.end;
       result.summary = result.film.summary();
       if (goal.rel_error && done == round->samples.end) look = look_at(result.film, {*goal.rel_error, kUnbounded}, number);
-      result.timeline.push_back({seconds_since(start), result.summary.mean_samples, result.summary.error_noise,
-                                 look ? std::optional(look->bound) : std::nullopt});
+      TimelinePoint point{seconds_since(start), result.summary.mean_samples, result.summary.error_noise, {}, {}};
+      if (look) {
+        point.error_bound = look->bound;
+        point.expected_spp = look->samples / settings.crop.pixels();
+      }
+      result.timeline.push_back(point);
       if (after_pass) after_pass(result.timeline.back());
     }
     round = look ? std::move(look->next) : std::nullopt;

@@ -29,10 +29,11 @@ struct FrameSettings {
 
 // State after a pass.
 struct TimelinePoint {
-  double seconds = 0;                 // since the first pass began
-  double spp = 0;                     // mean over the pixels
-  std::optional<double> error;        // FilmSummary::error_noise
-  std::optional<double> error_bound;  // ErrorLook::bound, after a round towards an error goal
+  double seconds = 0;                  // since the first pass began
+  double spp = 0;                      // mean over the pixels
+  std::optional<double> error;         // FilmSummary::error_noise
+  std::optional<double> error_bound;   // ErrorLook::bound, after a round towards an error goal
+  std::optional<double> expected_spp;  // ErrorLook::samples over the pixels, after such a round
 };
 
 struct FrameResult {

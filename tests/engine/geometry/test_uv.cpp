@@ -1,32 +1,54 @@
 // Texture coordinates of the shapes, against what Mitsuba 3.6.4 prints for the same rays.
 #include <gtest/gtest.h>
 
+#include <memory>
+
 #include "accel/ray_accelerator.h"
 #include "scene/make_shape.h"
 
 namespace fluxfarm::testing {
 namespace {
 
+// A shape that rays down -z look for.
+class ShapeBelow {
+ public:
+  template <typename Geometry>
+  explicit ShapeBelow(const Geometry& geometry, bool flip_normals = false)
+      : shape_(add_shape({"test shape", geometry, flip_normals, 0, {}}, false, shared_, accelerator_)) {
+    accelerator_.build();
+  }
+
+  struct Meeting {
+    SurfacePoint point;
+    Hit hit;
+  };
+  Meeting meet(Vec3f origin) const {
+    const Ray ray{origin, {0, 0, -1}};
+    Hit hit;
+    if (!accelerator_.intersect(ray, hit)) {
+      ADD_FAILURE() << "the ray meets nothing";
+      return {};
+    }
+    return {shape_->surface_point(ray, hit), hit};
+  }
+  const Shape& shape() const { return *shape_; }
+
+ private:
+  RayAccelerator accelerator_{1};
+  SharedMeshes shared_;
+  std::unique_ptr<Shape> shape_;
+};
+
 struct Place {
   Vec2f uv;
   Vec3f tangent;
 };
 
-// Where a ray from `origin` down -z meets the shape.
 template <typename Geometry>
 Place place_below(const Geometry& geometry, Vec3f origin, bool flip_normals = false) {
-  RayAccelerator accelerator(1);
-  SharedMeshes shared;
-  const auto shape = add_shape({"test shape", geometry, flip_normals, 0, {}}, false, shared, accelerator);
-  accelerator.build();
-  const Ray ray{origin, {0, 0, -1}};
-  Hit hit;
-  if (!accelerator.intersect(ray, hit)) {
-    ADD_FAILURE() << "the ray meets nothing";
-    return {};
-  }
-  const SurfacePoint point = shape->surface_point(ray, hit);
-  return {shape->uv(point, hit), shape->tangent(point, hit)};
+  const ShapeBelow below(geometry, flip_normals);
+  const auto [point, hit] = below.meet(origin);
+  return {below.shape().uv(point, hit), below.shape().tangent(point, hit)};
 }
 
 void expect_near(Vec2f uv, Vec2f expected) {
@@ -47,24 +69,16 @@ SphereDescription sphere(const Transform& to_world, Vec3f center, float radius) 
 // Moves along the derivatives and looks whether uv follows.
 template <typename Geometry>
 void expect_derivatives_lead_along_uv(const Geometry& geometry, Vec3f origin, bool flip_normals = false) {
-  RayAccelerator accelerator(1);
-  SharedMeshes shared;
-  const auto shape = add_shape({"test shape", geometry, flip_normals, 0, {}}, false, shared, accelerator);
-  accelerator.build();
-  const auto meet = [&](Vec3f from) {
-    const Ray ray{from, {0, 0, -1}};
-    Hit hit;
-    EXPECT_TRUE(accelerator.intersect(ray, hit));
-    return std::pair{shape->surface_point(ray, hit), hit};
-  };
-  const auto [point, hit] = meet(origin);
-  const Vec2f uv = shape->uv(point, hit);
-  const Shape::UvDerivatives d = shape->uv_derivatives(point, hit);
+  const ShapeBelow below(geometry, flip_normals);
+  const Shape& shape = below.shape();
+  const auto [point, hit] = below.meet(origin);
+  const Vec2f uv = shape.uv(point, hit);
+  const Shape::UvDerivatives d = shape.uv_derivatives(point, hit);
   constexpr float kStep = 2e-3f;
   for (const bool along_u : {true, false}) {
     const Vec3f step = (along_u ? d.dp_du : d.dp_dv) * kStep;
-    const auto [p, h] = meet({point.position.x + step.x, point.position.y + step.y, origin.z});
-    const Vec2f moved = shape->uv(p, h);
+    const auto [p, h] = below.meet({point.position.x + step.x, point.position.y + step.y, origin.z});
+    const Vec2f moved = shape.uv(p, h);
     EXPECT_NEAR((moved.x - uv.x) / kStep, along_u ? 1 : 0, 0.03) << along_u;
     EXPECT_NEAR((moved.y - uv.y) / kStep, along_u ? 0 : 1, 0.03) << along_u;
   }
@@ -95,13 +109,11 @@ TEST(VertexColours, LieBetweenThoseOfTheCorners) {
   mesh.positions = {{-1, -1, 0}, {1, -1, 0}, {0, 1, 0}};
   mesh.colors = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
   mesh.indices = {0, 1, 2};
-  RayAccelerator accelerator(1);
-  SharedMeshes shared;
-  const auto shape = add_shape({"test shape", mesh, false, 0, {}}, false, shared, accelerator);
+  const ShapeBelow below(mesh);
   Hit hit;
   hit.u = 0.2f;
   hit.v = 0.3f;
-  const Rgb c = shape->vertex_color(hit);
+  const Rgb c = below.shape().vertex_color(hit);
   EXPECT_NEAR(c.r, 0.5f, 1e-6f);
   EXPECT_NEAR(c.g, 0.2f, 1e-6f);
   EXPECT_NEAR(c.b, 0.3f, 1e-6f);

@@ -66,6 +66,19 @@ TEST_F(Images, FloatsOfAnExrAreTakenAsTheyAre) {
   EXPECT_EQ(grey.texel(1, 1), Rgb(0.2f));
 }
 
+TEST_F(Images, AlphaComesWithTheColours) {
+  const ImageAndAlpha both = read_image_and_alpha(write("a.exr", exr({"A", "B", "G", "R", "Z"})), "a.exr");
+  EXPECT_FLOAT_EQ(both.colors.texel(0, 0).b, 0.25f);
+  EXPECT_FLOAT_EQ(both.colors.texel(1, 1).r, 0.8f);
+  ASSERT_TRUE(both.alpha.has_value());
+  EXPECT_FLOAT_EQ(both.alpha->texel(0, 0).g, 0.05f);
+  EXPECT_FLOAT_EQ(both.alpha->texel(1, 1).g, 0.2f);
+  const ImageAndAlpha grey = read_image_and_alpha(write("grey.exr", exr({"A", "Y"})), "grey.exr");
+  EXPECT_FLOAT_EQ(grey.colors.texel(1, 1).g, 0.4f);
+  EXPECT_FLOAT_EQ(grey.alpha.value().texel(1, 1).g, 0.2f);
+  EXPECT_FALSE(read_image_and_alpha(write("rgb.exr", exr({"B", "G", "R"})), "rgb.exr").alpha.has_value());
+}
+
 TEST_F(Images, RadiancePicturesAreLinear) {
   // Two pixels, not run-length coded: (128, 64, 32) and (255, 0, 255) with exponents 2^(128 - 136) and 2^(127 - 136).
   const std::string pixels{"\x80\x40\x20\x80\xff\x00\xff\x7f", 8};

@@ -1,13 +1,8 @@
 """How far a job is and how long it may still take."""
 
-import math
 from dataclasses import dataclass
 
 from fluxfarm.domain.goal import Goal
-from fluxfarm.domain.records import Revision
-
-# The square of the error falls with the samples to this power at least (random samples) and at most (stratified ones).
-SLOWEST_FALL, FASTEST_FALL = 1.0, 2.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -20,22 +15,6 @@ class Progress:
     pass_number: int
     error_now: float | None
     eta_seconds: float | None
-
-
-def samples_expected(before: Revision | None, decision: Revision, pixels: int) -> float | None:
-    """Camera samples of a whole job of `pixels` pixels with an error goal, as of its newest decision.
-
-    The engine takes variances to fall as 1 / samples. Stratified samples do better, and few samples let dark places
-    look worse than they are: how much faster the bound fell since the decision `before` is taken to go on."""
-    if decision.samples_expected is None or before is None:
-        return decision.samples_expected
-    taken = decision.mean_samples * pixels
-    growth = decision.mean_samples / max(before.mean_samples, 1.0)
-    if growth <= 1 or not before.error_bound or not decision.error_bound or math.isinf(before.error_bound):
-        return decision.samples_expected
-    fall = 2 * math.log(before.error_bound / decision.error_bound) / math.log(growth)
-    fall = min(max(fall, SLOWEST_FALL), FASTEST_FALL)
-    return float(taken * max(decision.samples_expected / taken, 1.0) ** (1 / fall))
 
 
 def eta_seconds(

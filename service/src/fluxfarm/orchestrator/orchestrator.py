@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import TypeVar
 
 from fluxfarm.domain.goal import ERROR_TILE
-from fluxfarm.domain.job import TERMINAL_STATES, JobState
+from fluxfarm.domain.job import JobState
 from fluxfarm.domain.leases import (
     FailureKind,
     Lease,
@@ -37,10 +37,11 @@ from fluxfarm.domain.scene import check_bundle
 from fluxfarm.domain.tiles import PixelRect, TileGrid
 from fluxfarm.errors import AssetsMissing, EngineTrouble, StaleLease
 from fluxfarm.orchestrator.committer import Batch, Committer
-from fluxfarm.orchestrator.dispatch import Dispatcher, scene_ref
+from fluxfarm.orchestrator.dispatch import Dispatcher
 from fluxfarm.orchestrator.inbox import Inbox
 from fluxfarm.orchestrator.publisher import publish
 from fluxfarm.orchestrator.run import JobRun
+from fluxfarm.orchestrator.runs import Runs
 from fluxfarm.orchestrator.status import progress_of
 from fluxfarm.orchestrator.tallies import Tallies
 from fluxfarm.orchestrator.tile_images import tile_lease
@@ -50,9 +51,6 @@ from fluxfarm.ports import BlobStore, Ledger, WorkerPool
 T = TypeVar("T")
 log = logging.getLogger(__name__)
 
-# A scene that ended this many engine processes is at fault itself.
-MOST_CRASHES = 3
-MOST_RESOURCE_FAILURES = 3
 TILE_IMAGE_TIMEOUT_S = 30.0
 # Under load the inbox is never empty, and the engine processes must not wait for that.
 MESSAGES_PER_DISPATCH = 32
@@ -75,22 +73,20 @@ class Orchestrator:
         self._blobs = blobs
         self._pool = pool
         self._settings = settings
-        self._runs: dict[str, JobRun] = {}
         self._inbox = Inbox()
         self._committer = Committer(ledger, blobs, self._report_batch)
         self._dispatcher = Dispatcher(ledger, blobs, pool, self._committer, settings.lease_s)
         self._tasks: set[asyncio.Task[None]] = set()
         self.watch = Watch()
         self.tallies = Tallies()
+        self._runs = Runs(ledger, blobs, pool, self.watch)
 
     # ---- life ----
 
     async def start(self) -> None:
         """Resume every unfinished job and begin to work."""
         self._dispatcher.next_fence = await self._ledger.highest_fence() + 1
-        unfinished = [s for s in JobState if s not in TERMINAL_STATES and s is not JobState.PAUSED]
-        for record in reversed(await self._ledger.jobs(unfinished)):
-            await self._adopt(record)
+        await self._runs.adopt_all()
         await self._pool.start()
         for work in (self._handle_inbox(), self._hear_outcomes(), self._committer.run()):
             self._background(work)
@@ -116,24 +112,24 @@ class Orchestrator:
         wanted_id = str(uuid.uuid4())
         job_id = await self._ledger.add_job(wanted_id, request, key, body_sha256)
         if job_id == wanted_id:
-            await self._inbox.ask(lambda: self._begin(job_id))
+            await self._inbox.ask(lambda: self._runs.adopt(job_id))
         return job_id, job_id == wanted_id
 
     async def cancel(self, job_id: str) -> None:
         """Give a job up; when this returns, no tile of it is committed any more. Again: no effect."""
-        await self._inbox.ask(lambda: self._halt(job_id, JobState.CANCELLED))
+        await self._inbox.ask(lambda: self._runs.halt(job_id, JobState.CANCELLED))
 
     async def pause(self, job_id: str) -> None:
         """Stop a job for now. Again on a paused job: no effect."""
-        await self._inbox.ask(lambda: self._halt(job_id, JobState.PAUSED))
+        await self._inbox.ask(lambda: self._runs.halt(job_id, JobState.PAUSED))
 
     async def resume(self, job_id: str) -> None:
         """Let a paused job go on. On a job that is not paused: IllegalTransition."""
-        await self._inbox.ask(lambda: self._resume(job_id))
+        await self._inbox.ask(lambda: self._runs.resume(job_id))
 
     async def delete(self, job_id: str) -> None:
         """Remove a job with all of its files, cancelling it first if it is unfinished."""
-        await self._inbox.ask(lambda: self._delete(job_id))
+        await self._inbox.ask(lambda: self._runs.delete(job_id))
 
     async def tile_image(self, job_id: str, column: int, row: int) -> Path:
         """Have one tile written as an image of its own; the caller removes the file.
@@ -198,61 +194,12 @@ class Orchestrator:
 
     async def _dispatch(self) -> None:
         """Fill the engine processes' windows, then see which jobs have come to their end."""
-        await self._dispatcher.fill(self._in_order())
-        for run in self._in_order():
+        await self._dispatcher.fill(self._runs.in_order())
+        for run in self._runs.in_order():
             if run.state is JobState.RUNNING and run.stop is not None and run.all_passes_complete:
-                await self._to(run, JobState.FINALIZING)
+                await self._runs.change(run, JobState.FINALIZING)
             if run.state is JobState.FINALIZING and run.all_merged:
-                await self._finish(run)
-
-    def _in_order(self) -> list[JobRun]:
-        return sorted(self._runs.values(), key=lambda run: (-run.request.priority, run.created_at))
-
-    # ---- commands, inside ----
-
-    async def _begin(self, job_id: str) -> None:
-        await self._adopt(await self._ledger.job(job_id))
-        self.watch.notify(job_id)
-
-    async def _adopt(self, record: JobRecord) -> None:
-        """Take an unfinished job into memory, resolving a state that a restart left in the middle."""
-        folder = await self._blobs.scene_folder(record.request.bundle)
-        run = JobRun(record, scene_ref(record.request, folder))
-        if record.state is JobState.PREPARING:
-            await self._to(run, JobState.QUEUED)
-        elif record.state is JobState.FINALIZING:
-            await self._to(run, JobState.RUNNING)
-        if run.state is JobState.RUNNING:
-            assert record.facts is not None and record.grid is not None
-            run.start(record.facts, record.grid, await self._ledger.unmerged(record.id), time.monotonic())
-        self._runs[record.id] = run
-
-    async def _halt(self, job_id: str, state: JobState) -> None:
-        record = await self._ledger.job(job_id)
-        if record.state is state:
-            return
-        run = self._runs.get(job_id)
-        running_s = None if run is None else run.running_s(time.monotonic())
-        await self._ledger.change_state(job_id, state, None, running_s)
-        self._forget(job_id)
-
-    async def _resume(self, job_id: str) -> None:
-        record = await self._ledger.job(job_id)
-        await self._ledger.change_state(job_id, JobState.QUEUED if record.facts is None else JobState.RUNNING)
-        await self._begin(job_id)
-
-    async def _delete(self, job_id: str) -> None:
-        if (await self._ledger.job(job_id)).state not in TERMINAL_STATES:
-            await self._halt(job_id, JobState.CANCELLED)
-        await self._ledger.delete_job(job_id)
-        await self._blobs.drop_job(job_id)
-        self.watch.notify(job_id)
-
-    def _forget(self, job_id: str) -> None:
-        """The job is not worked on any more."""
-        self._runs.pop(job_id, None)
-        self._pool.cancel(job_id)
-        self.watch.notify(job_id)
+                await self._runs.finish(run)
 
     # ---- outcomes ----
 
@@ -318,13 +265,13 @@ class Orchestrator:
         self.tallies.stale_tiles += len(batch.taken) - sum(batch.taken)
         self.tallies.commit_seconds.add(batch.seconds)
         for fence in batch.ended:
-            for run in self._runs.values():
+            for run in self._runs.in_order():
                 if run.has_lease(fence):
                     run.end_lease(fence)
         for job_id in {commit.job_id for commit in batch.commits}:
             run = self._runs.get(job_id)
             if batch.fault is not None and run is not None:
-                await self._count_failure(run, FailureKind.RESOURCE, batch.fault)
+                await self._runs.count_failure(run, FailureKind.RESOURCE, batch.fault)
             self.watch.notify(job_id)
 
     async def _on_prepared(self, run: JobRun, outcome: Prepared) -> None:
@@ -332,11 +279,11 @@ class Orchestrator:
         frame = PixelRect(0, 0, facts.width, facts.height)
         crop = request.crop or facts.crop
         if frame.area > self._settings.max_pixels:
-            await self._fail(
+            await self._runs.fail(
                 run, f"size = {facts.width}x{facts.height}: expected at most {self._settings.max_pixels} pixels"
             )
         elif not frame.contains(crop) or crop.area == 0:
-            await self._fail(
+            await self._runs.fail(
                 run,
                 f"crop = {crop.x},{crop.y} {crop.width}x{crop.height}: expected a part of the frame, "
                 f"{facts.width}x{facts.height} pixels",
@@ -367,14 +314,14 @@ class Orchestrator:
         self.tallies.revisions += 1
         self.watch.notify(run.id)
 
-    # ---- faults and ends ----
+    # ---- faults ----
 
     async def _on_fault(self, run: JobRun, lease: Lease, kind: FailureKind | None, message: str) -> None:
         """A lease came to nothing; `kind` is None if that was not the job's fault."""
         if kind is FailureKind.SCENE:
-            await self._fail(run, message)
+            await self._runs.fail(run, message)
             return
-        if kind is not None and await self._count_failure(run, kind, message):
+        if kind is not None and await self._runs.count_failure(run, kind, message):
             return
         if isinstance(lease, RenderLease):
             self._committer.end(lease.fence)
@@ -382,38 +329,9 @@ class Orchestrator:
         await self._ledger.commit_tiles([], [lease.fence])
         run.end_lease(lease.fence)
         if isinstance(lease, PrepareLease):
-            await self._to(run, JobState.QUEUED)
+            await self._runs.change(run, JobState.QUEUED)
         elif isinstance(lease, MergeLease):
             await self._blobs.drop(_outputs(lease))
-
-    async def _count_failure(self, run: JobRun, kind: FailureKind, message: str) -> bool:
-        """Count a failure; returns True if it was one too many and the job failed."""
-        crash = kind is FailureKind.INTERNAL
-        count = await self._ledger.count_failure(run.id, crash, run.running_s(time.monotonic()))
-        log.warning("work failed", extra={"job": run.id, "kind": str(kind), "count": count, "reason": message})
-        if crash:
-            run.crashes = count
-        if count >= (MOST_CRASHES if crash else MOST_RESOURCE_FAILURES):
-            times = "ended three engine processes" if crash else "ran out of resources three times"
-            await self._fail(run, f"{times}: {message}")
-            return True
-        return False
-
-    async def _fail(self, run: JobRun, reason: str) -> None:
-        await self._to(run, JobState.FAILED, reason)
-        self._forget(run.id)
-
-    async def _finish(self, run: JobRun) -> None:
-        if run.stop is not None and run.stop.warning is not None:
-            await self._ledger.warn(run.id, run.stop.warning)
-        await self._to(run, JobState.SUCCEEDED)
-        self._forget(run.id)
-
-    async def _to(self, run: JobRun, state: JobState, reason: str | None = None) -> None:
-        """Change a run's state in the ledger, then in memory."""
-        await self._ledger.change_state(run.id, state, reason, run.running_s(time.monotonic()))
-        run.state = state
-        self.watch.notify(run.id)
 
 
 def _outputs(lease: MergeLease) -> list[Path]:

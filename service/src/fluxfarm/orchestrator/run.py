@@ -19,7 +19,6 @@ from fluxfarm.domain.goal import (
 )
 from fluxfarm.domain.job import JobState
 from fluxfarm.domain.leases import Decision, RenderLease, SceneRef
-from fluxfarm.domain.progress import samples_expected
 from fluxfarm.domain.records import JobRecord, OpenedPass, Revision, SceneFacts, Unmerged
 from fluxfarm.domain.schedule import Round, SampleRange
 from fluxfarm.domain.tiles import TileGrid
@@ -80,7 +79,6 @@ class JobRun:
         self._spp = 0
         self._samples = record.samples_done
         self.samples_expected: float | None = None
-        self._decision: Revision | None = None
         # The newest film and, in the order of merging, the tiles of passes that are merged but not in it.
         self.film: str | None = None
         self.loose_tiles: tuple[str, ...] = ()
@@ -298,10 +296,8 @@ class JobRun:
 
     def _begin_round(self, decision: Revision) -> None:
         """An error goal was decided."""
-        assert self._grid is not None
         self._round = decision.next_round
-        self.samples_expected = samples_expected(self._decision, decision, self._grid.crop.area)
-        self._decision = decision
+        self.samples_expected = decision.samples_expected
         if self._round is not None:
             self._spp = self._round.samples.begin
 
