@@ -8,6 +8,7 @@
 
 #include "film/error_bound.h"
 #include "film/tile_grid.h"
+#include "film/unseen_error.h"
 
 namespace fluxfarm {
 namespace {
@@ -27,6 +28,10 @@ constexpr double kDistinct = 3;
 // veach-mis, 128x72 at 10 %: with 0 only 3 of 10 pictures keep the goal, with 0.7 14 of 16, with 0.8 all of 24, of which 16 have
 // more than half of the error that was asked for, with 1 only 4 of 10.
 constexpr double kDoubt = 0.8;
+
+// Beyond so many samples a pixel no tile stays open because the audit doubts it (a choice): an event that rare is not worth a wait
+// without an end.
+constexpr std::uint32_t kMostForDoubt = 4096;
 
 struct TileError {
   double pixels = 0;
@@ -194,6 +199,22 @@ double predict_samples(std::vector<TileError> tiles, const ErrorGoal& goal, doub
   return samples;
 }
 
+// The goal that noise has to meet so that the whole error meets the one that was asked for. Where light that no sample can find
+// would leave less than half of its square, that is out of reach, and noise is held to the goal itself.
+ErrorGoal goal_for_noise(ErrorGoal goal, double unreachable) {
+  const double asked = goal.rel_error * goal.rel_error, lost = unreachable * unreachable;
+  if (lost > 0 && lost <= asked / 2) goal.rel_error = std::sqrt(asked - lost);
+  return goal;
+}
+
+// What follows because the audit doubts tiles of a picture whose noise is low enough.
+std::optional<Round> choose_doubtful(std::vector<TileError> tiles, const std::vector<std::uint32_t>& doubtful, ErrorGoal goal) {
+  for (TileError& tile : tiles) tile.own = tile.pooled = 0;
+  for (const std::uint32_t index : doubtful) tiles[index].own = 1;
+  goal.most_samples = std::min(goal.most_samples, kMostForDoubt);
+  return choose_round(tiles, goal);
+}
+
 }  // namespace
 
 Round first_round(const ErrorGoal& goal, PixelRect crop) {
@@ -203,7 +224,7 @@ Round first_round(const ErrorGoal& goal, PixelRect crop) {
   return round;
 }
 
-ErrorLook look_at(const Film& film, const ErrorGoal& goal, int number) {
+ErrorLook look_at(const Film& film, const ErrorGoal& goal, int number, const LightAudit* audit) {
   const PixelRect crop = film.crop();
   const ErrorShares shares(film);
   ErrorBound bound;
@@ -212,9 +233,23 @@ ErrorLook look_at(const Film& film, const ErrorGoal& goal, int number) {
   pool(tiles, (crop.width + kErrorTile - 1) / kErrorTile);
   ErrorLook look;
   const bool known = std::ranges::all_of(tiles, [](const TileError& tile) { return tile.samples >= 2; });
-  look.bound = known ? bound.at(number) : std::numeric_limits<double>::infinity();
-  if (look.bound > goal.rel_error) look.next = choose_round(tiles, goal);
-  look.samples = predict_samples(std::move(tiles), goal, look.bound, bound.estimate());
+  const double noise = known ? bound.at(number) : std::numeric_limits<double>::infinity();
+  UnseenError unseen;
+  if (audit != nullptr) {
+    unseen = unseen_error(film, *audit, number);
+    look.unseen = unseen.error;
+  }
+  look.bound = std::hypot(noise, unseen.error);
+  const ErrorGoal for_noise = goal_for_noise(goal, unseen.unreachable_error);
+  if (noise > for_noise.rel_error) {
+    look.next = choose_round(tiles, for_noise);
+  } else if (look.bound > goal.rel_error) {
+    look.next = choose_doubtful(tiles, unseen.doubtful, goal);
+  }
+  if (!look.next && look.bound > goal.rel_error && noise <= for_noise.rel_error) {
+    look.warning = unseen_warning(unseen, goal.rel_error);
+  }
+  look.samples = predict_samples(std::move(tiles), for_noise, noise, bound.estimate());
   return look;
 }
 

@@ -261,6 +261,26 @@ TEST(LightAudit, FindsTheLightOfABulbUnreachable) {
   }
 }
 
+// C8: a picture of a floor under a bulb. Nothing of it disagrees with itself, for paths find nothing at all.
+TEST(LightAudit, KeepsABulbFromBeingClaimed) {
+  SceneBuilder builder;
+  builder.floor(0, 3, builder.diffuse(0.5f)).emitter(PointEmitterDescription{{0, 1, 0}, Rgb{1}});
+  builder.shape(SphereDescription{{0, 1, 0}, 0.2f}, builder.add(DielectricDescription{}));
+  builder.look({2, 2, 0}, {1.2, 0, 0});
+  const Scene scene(wide_view(builder, 35), 1);
+  const auto integrator = make_integrator("path", scene);
+  const std::atomic<bool> never{false};
+  const FrameResult result = render_frame(scene, *integrator, {kFrame, 64, 2, 1, {{}, {}, 0.1}}, never);
+  ASSERT_EQ(result.warnings.size(), 1u);
+  EXPECT_NE(result.warnings[0].find("about 100 % of the picture's light"), std::string::npos) << result.warnings[0];
+  EXPECT_GT(result.error_unseen.value(), 0.1);
+  EXPECT_GT(result.timeline.back().error_bound.value(), 0.1);
+  // Twin: the same decision without the audit claims a black picture.
+  const ErrorLook blind = look_at(result.film, {0.1}, 1);
+  EXPECT_FALSE(blind.next.has_value());
+  EXPECT_EQ(blind.bound, 0);
+}
+
 TEST(LightAudit, IsTheSameForAnyNumberOfThreads) {
   const Scene scene(wide_view(room(DielectricDescription{}), 50), 1);
   const LightAudit one = audit_light(scene, kFrame, 3, 1).value(), three = audit_light(scene, kFrame, 3, 3).value();
