@@ -23,7 +23,7 @@ demo: build
 # What CI runs: engine tests, then service, contract and render tests (short versions of the slow ones).
 test: build
 	ctest --test-dir build/release -j 2 --output-on-failure --no-tests=error
-	$(PYTEST) -m "not slow" tests/service tests/contract tests/render
+	$(PYTEST) -m "not slow" tests/service tests/contract tests/render tests/stability
 
 # Only what answers within seconds.
 test-fast: build
@@ -57,7 +57,7 @@ chart: build
 
 # The slow statistical and fault suites.
 stability: build
-	$(PYTEST) -m slow --timeout 3600 tests/service tests/contract tests/render
+	$(PYTEST) -m slow --timeout 3600 tests/service tests/contract tests/render tests/stability
 
 # The engine's tests under the address and undefined-behaviour sanitizers, or the thread sanitizer.
 asan: PRESET := asan-ubsan

@@ -104,6 +104,10 @@ void render(const RenderOptions& options) {
     warnings.push_back(std::to_string(result.summary.non_finite_samples) + " samples were not finite and count as zero");
     std::fprintf(stderr, "warning: %s\n", warnings.back().c_str());
   }
+  for (const std::string& warning : result.warnings) {
+    warnings.push_back(warning);
+    std::fprintf(stderr, "warning: %s\n", warning.c_str());
+  }
   if (!report) return;
   nlohmann::json timeline = nlohmann::json::array();
   for (const TimelinePoint& point : result.timeline) {
@@ -124,8 +128,8 @@ void render(const RenderOptions& options) {
       {"rays", result.rays},
       {"rays_per_second", static_cast<double>(result.rays) / result.seconds},
       {"mean", result.summary.mean},
-      // Path tracing has no bias of its own; energy that it never sampled is not audited yet, so that is left open.
-      {"error", {{"noise", or_null(result.summary.error_noise)}, {"bias", 0.0}, {"unseen", nullptr}}},
+      // Path tracing has no bias of its own; light that it never sampled is looked for where an error goal is to be claimed.
+      {"error", {{"noise", or_null(result.summary.error_noise)}, {"bias", 0.0}, {"unseen", or_null(result.error_unseen)}}},
       {"timeline", timeline},
       {"plan", nlohmann::json::parse(plan_json(scene))},
       {"warnings", warnings}};

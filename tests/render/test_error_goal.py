@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from conftest import ROOT, beauty, render_alone
+from farm import Farm
 
 
 def relative_error(image: np.ndarray, reference: np.ndarray) -> float:
@@ -34,6 +35,45 @@ def test_error_goal_is_kept_without_wasting_samples(tmp_path: Path) -> None:
     assert np.median(errors) > 0.05, errors
     # Twin: the same pictures do not keep half of the goal.
     assert np.count_nonzero(errors <= 0.05) < 7, errors
+
+
+# A point light in a ball of glass, and another one without.
+BULB = """<scene version="3.0.0">
+  <integrator type="path"/>
+  <sensor type="perspective">
+    <float name="fov" value="60"/>
+    <transform name="to_world"><lookat origin="0, 2, 3" target="0, 0, 0" up="0, 1, 0"/></transform>
+    <film type="hdrfilm"><integer name="width" value="64"/><integer name="height" value="64"/></film>
+  </sensor>
+  <shape type="rectangle">
+    <transform name="to_world"><scale value="4"/><rotate x="1" angle="-90"/></transform>
+    <bsdf type="diffuse"/>
+  </shape>
+  <shape type="sphere">
+    <point name="center" x="0" y="0.6" z="0"/><float name="radius" value="0.1"/><bsdf type="dielectric"/>
+  </shape>
+  <emitter type="point"><point name="position" x="0" y="0.6" z="0"/></emitter>
+  <emitter type="point"><point name="position" x="1" y="0.6" z="0"/></emitter>
+</scene>
+"""
+
+
+def test_light_that_no_path_finds_keeps_a_job_from_claiming_its_goal(farms: list[Farm], tmp_path: Path) -> None:
+    farms.append(farm := Farm(tmp_path))
+    job_id = farm.client.submit(BULB, size={"width": 64, "height": 64}, goal={"rel_error": 0.1}, seed=0)
+    job = farm.client.succeed(job_id)
+    assert any("cannot find" in warning for warning in job["warnings"]), job["warnings"]
+    report = farm.client.http.get(f"/v1/jobs/{job_id}/report").json()
+    assert report["error"]["noise"] < 0.1 < report["error"]["unseen"]
+    assert report["warnings"] == job["warnings"]
+
+    # Twin: without the ball the same light is found, and nothing is missing.
+    start, end = BULB.index('<shape type="sphere">'), BULB.index('<emitter type="point">')
+    job_id = farm.client.submit(
+        BULB[:start] + BULB[end:], size={"width": 64, "height": 64}, goal={"rel_error": 0.1}, seed=0
+    )
+    assert farm.client.succeed(job_id)["warnings"] == []
+    assert farm.client.http.get(f"/v1/jobs/{job_id}/report").json()["error"]["unseen"] == 0
 
 
 @pytest.mark.slow

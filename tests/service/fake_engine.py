@@ -44,7 +44,7 @@ class FakeEngine:
         self.scenes: dict[str, dict[str, str]] = {}
 
     def run(self) -> None:
-        self.reply(0, hello=pb.Hello(protocol_version=2, engine_build="fake-1", threads=self.threads, pid=os.getpid()))
+        self.reply(0, hello=pb.Hello(protocol_version=3, engine_build="fake-1", threads=self.threads, pid=os.getpid()))
         threading.Thread(target=self.read_to_the_end, daemon=True).start()
         while (request := self.requests.get()) is not None:
             kind = request.WhichOneof("body")
@@ -195,7 +195,7 @@ def main() -> None:
     parser.add_argument("--json", action="store_true")
     arguments = parser.parse_args()
     if arguments.command == "info":
-        print('{"build": "fake-1", "protocol_version": 2}')
+        print('{"build": "fake-1", "protocol_version": 3}')
         return
     FakeEngine(socket.socket(fileno=arguments.fd), arguments.threads).run()
 

@@ -15,6 +15,11 @@ class DirectionalEmitter final : public Emitter {
   std::optional<EmitterSample> sample(Vec3f, Vec2f) const override {
     return EmitterSample{{}, {}, -direction_, kDistant, irradiance_, 0, true};
   }
+  std::optional<EmissionSample> emit(Vec2f u_point, Vec2f, Vec3f scene_center) const override {
+    EmissionSample sample = emitted_from_outside(direction_, irradiance_, scene_center, scene_radius_, u_point);
+    sample.delta = true;
+    return sample;
+  }
   std::optional<EmitterBounds> bounds() const override { return std::nullopt; }
   // What falls on the disk that the scene's sphere shows to the light.
   Rgb power() const override { return irradiance_ * (kPi * scene_radius_ * scene_radius_); }

@@ -1,6 +1,27 @@
 #include "emitters/emitter.h"
 
+#include "math/frame.h"
+#include "sampling/warp.h"
+
 namespace fluxfarm {
+
+EmissionSample emitted_by(const AreaSample& point, Rgb power, bool both_sides, Vec2f u_direction) {
+  Vec3f normal = point.normal;
+  if (both_sides) {
+    const bool back = u_direction.x >= 0.5f;
+    u_direction.x = 2 * u_direction.x - (back ? 1.0f : 0.0f);
+    if (back) normal = -normal;
+  }
+  const Vec3f direction = Frame(normal).to_world(square_to_cosine_hemisphere(u_direction));
+  return {{offset_point(point.position, normal), direction}, power, false};
+}
+
+EmissionSample emitted_from_outside(Vec3f direction, Rgb irradiance, Vec3f scene_center, float scene_radius, Vec2f u_point) {
+  const Frame frame(direction);
+  const Vec2f p = square_to_uniform_disk(u_point);
+  const Vec3f origin = scene_center + scene_radius * (p.x * frame.s + p.y * frame.t - direction);
+  return {{origin, direction}, irradiance * (kPi * scene_radius * scene_radius), false};
+}
 
 std::optional<EmitterSample> AreaEmitter::sample(Vec3f reference, Vec2f u) const {
   return emitted_from(shape_.sample(reference, u), radiance_, both_sides_);
@@ -26,6 +47,10 @@ std::optional<EmitterSample> PointEmitter::sample(Vec3f reference, Vec2f) const 
   if (!(squared > 0)) return std::nullopt;
   const float distance = std::sqrt(squared);
   return EmitterSample{position_, {}, d / distance, distance, intensity_ / squared, 0, true};
+}
+
+std::optional<EmissionSample> PointEmitter::emit(Vec2f, Vec2f u_direction, Vec3f) const {
+  return EmissionSample{{position_, square_to_uniform_sphere(u_direction)}, power(), true};
 }
 
 std::optional<EmitterBounds> PointEmitter::bounds() const {

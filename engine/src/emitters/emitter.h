@@ -10,6 +10,7 @@
 
 #include "emitters/emitter_bounds.h"
 #include "geometry/shape.h"
+#include "math/ray.h"
 #include "math/rgb.h"
 #include "math/vec.h"
 
@@ -29,11 +30,21 @@ struct EmitterSample {
   bool delta = false;         // one direction only: BSDF sampling cannot find it
 };
 
+// A ray on which light leaves an emitter, with the flux that it stands for.
+struct EmissionSample {
+  Ray ray;
+  Rgb flux;            // what leaves in all, over the density of this ray, W
+  bool delta = false;  // of a delta light: BSDF sampling from the other end cannot find it
+};
+
 class Emitter {
  public:
   virtual ~Emitter() = default;
   // Chooses a point of the emitter as seen from `reference`. Empty: no light can come from there.
   virtual std::optional<EmitterSample> sample(Vec3f reference, Vec2f u) const = 0;
+  // Chooses a ray that light leaves on; both u in [0,1)^2. Light from outside starts on the far side of a sphere around
+  // `scene_center`. Empty: no light leaves there.
+  virtual std::optional<EmissionSample> emit(Vec2f u_point, Vec2f u_direction, Vec3f scene_center) const = 0;
   virtual Rgb power() const = 0;  // W; of light from outside, what the scene can catch
   // Where it is and whither it shines. Empty: it is outside the scene.
   virtual std::optional<EmitterBounds> bounds() const = 0;
@@ -49,6 +60,12 @@ inline std::optional<EmitterSample> emitted_from(const std::optional<ShapeSample
       s->position, back ? -s->normal : s->normal, s->wi, s->distance, radiance / s->pdf_solid_angle, s->pdf_solid_angle, false};
 }
 
+// What a surface of that `power` sends from a point that was chosen evenly over its area: radiance is the same in all directions.
+EmissionSample emitted_by(const AreaSample& point, Rgb power, bool both_sides, Vec2f u_direction);
+// What comes from outside in `direction` (world, unit), where a surface across it catches `irradiance`, through an even choice of
+// points of the disk which the scene's sphere shows to it.
+EmissionSample emitted_from_outside(Vec3f direction, Rgb irradiance, Vec3f scene_center, float scene_radius, Vec2f u_point);
+
 class AreaEmitter final : public Emitter {
  public:
   // Emits `radiance` (W m^-2 sr^-1) from the front side of `shape`, or from both; `shape` must outlive this.
@@ -56,6 +73,9 @@ class AreaEmitter final : public Emitter {
       : shape_(shape), radiance_(radiance), both_sides_(both_sides) {}
 
   std::optional<EmitterSample> sample(Vec3f reference, Vec2f u) const override;
+  std::optional<EmissionSample> emit(Vec2f u_point, Vec2f u_direction, Vec3f) const override {
+    return emitted_by(shape_.sample_area(u_point), power(), both_sides_, u_direction);
+  }
   Rgb power() const override { return radiance_ * ((both_sides_ ? kTwoPi : kPi) * shape_.area()); }
   std::optional<EmitterBounds> bounds() const override;
 
@@ -79,6 +99,7 @@ class PointEmitter final : public Emitter {
   PointEmitter(Vec3f position, Rgb intensity) : position_(position), intensity_(intensity) {}
 
   std::optional<EmitterSample> sample(Vec3f reference, Vec2f u) const override;
+  std::optional<EmissionSample> emit(Vec2f u_point, Vec2f u_direction, Vec3f scene_center) const override;
   Rgb power() const override { return intensity_ * (4 * kPi); }
   std::optional<EmitterBounds> bounds() const override;
 

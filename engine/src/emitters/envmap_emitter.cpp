@@ -17,6 +17,12 @@ std::optional<EmitterSample> EnvmapEmitter::sample(Vec3f, Vec2f u) const {
       {}, {}, frame_.to_world(sample.direction), kDistant, radiance / sample.pdf_solid_angle, sample.pdf_solid_angle, false};
 }
 
+std::optional<EmissionSample> EnvmapEmitter::emit(Vec2f u_point, Vec2f u_direction, Vec3f scene_center) const {
+  const std::optional<EmitterSample> seen = sample(scene_center, u_direction);
+  if (!seen) return std::nullopt;
+  return emitted_from_outside(-seen->wi, seen->weight, scene_center, scene_radius_, u_point);
+}
+
 Rgb EnvmapEmitter::power() const {
   Rgb irradiance;  // summed over all directions
   for (int row = 0; row + 1 < image_.height; ++row) {

@@ -1,5 +1,8 @@
 #include "emitters/spot_emitter.h"
 
+#include "math/frame.h"
+#include "sampling/warp.h"
+
 namespace fluxfarm {
 
 std::optional<EmitterSample> SpotEmitter::sample(Vec3f reference, Vec2f) const {
@@ -11,6 +14,14 @@ std::optional<EmitterSample> SpotEmitter::sample(Vec3f reference, Vec2f) const {
   const float share = falloff(-wi);
   if (!(share > 0)) return std::nullopt;
   return EmitterSample{position_, {}, wi, distance, intensity_ * (share / squared), 0, true};
+}
+
+std::optional<EmissionSample> SpotEmitter::emit(Vec2f, Vec2f u_direction, Vec3f) const {
+  const float cos_max = std::cos(cutoff_angle_);
+  const Vec3f direction = Frame(axis_).to_world(square_to_uniform_cone(u_direction, cos_max));
+  const float share = falloff(direction);
+  if (!(share > 0)) return std::nullopt;
+  return EmissionSample{{position_, direction}, intensity_ * (share * kTwoPi * (1 - cos_max)), true};
 }
 
 float SpotEmitter::falloff(Vec3f direction) const {

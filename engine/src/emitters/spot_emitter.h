@@ -13,6 +13,7 @@ class SpotEmitter final : public Emitter {
       : position_(position), axis_(axis), intensity_(intensity), cutoff_angle_(cutoff_angle), beam_width_(beam_width) {}
 
   std::optional<EmitterSample> sample(Vec3f reference, Vec2f u) const override;
+  std::optional<EmissionSample> emit(Vec2f u_point, Vec2f u_direction, Vec3f scene_center) const override;
   Rgb power() const override;
   std::optional<EmitterBounds> bounds() const override;
 

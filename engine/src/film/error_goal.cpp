@@ -8,6 +8,7 @@
 #include "film/error_bound.h"
 #include "film/error_shares.h"
 #include "film/tile_grid.h"
+#include "film/unseen_error.h"
 
 namespace fluxfarm {
 namespace {
@@ -25,6 +26,10 @@ constexpr double kFewCarriers = 64;
 // the true values gets better. Measured between looks on cornell, cornell-glass, cornell-box and furnace: 1.0 to 1.3. On veach-mis,
 // where later samples find brighter paths, it goes down to 0.
 constexpr double kSlowestFall = 1.0, kFastestFall = 1.3;
+
+// Beyond so many samples a pixel no tile stays open because the audit doubts it (a choice): an event that rare is not worth a wait
+// without an end.
+constexpr std::uint32_t kMostForDoubt = 4096;
 
 struct TileError {
   std::uint32_t samples = 0;  // of each pixel
@@ -126,6 +131,25 @@ double predict_samples(const std::vector<TileError>& tiles, const ErrorGoal& goa
   return std::sqrt(samples_in_all(tiles, goal, number, kSlowestFall) * samples_in_all(tiles, goal, number, kFastestFall));
 }
 
+// The goal that noise has to meet so that the whole error meets the one that was asked for. Where light that no sample can find
+// would leave less than half of its square, that is out of reach, and noise is held to the goal itself.
+ErrorGoal goal_for_noise(ErrorGoal goal, double unreachable) {
+  const double asked = goal.rel_error * goal.rel_error, lost = unreachable * unreachable;
+  if (lost > 0 && lost <= asked / 2) goal.rel_error = std::sqrt(asked - lost);
+  return goal;
+}
+
+// What follows because the audit doubts tiles of a picture whose noise is low enough.
+std::optional<Round> choose_doubtful(std::vector<TileError> tiles, const std::vector<std::uint32_t>& doubtful, ErrorGoal goal) {
+  for (TileError& tile : tiles) {
+    tile.cells.scale(0);
+    tile.pooled = 0;
+  }
+  for (const std::uint32_t index : doubtful) tiles[index].pooled = 1;
+  goal.most_samples = std::min(goal.most_samples, kMostForDoubt);
+  return choose_round(tiles, goal);
+}
+
 }  // namespace
 
 Round first_round(const ErrorGoal& goal, PixelRect crop) {
@@ -135,16 +159,30 @@ Round first_round(const ErrorGoal& goal, PixelRect crop) {
   return round;
 }
 
-ErrorLook look_at(const Film& film, const ErrorGoal& goal, int number) {
+ErrorLook look_at(const Film& film, const ErrorGoal& goal, int number, const LightAudit* audit) {
   const PixelRect crop = film.crop();
   std::vector<TileError> tiles;
   for (const PixelRect& rect : make_tiles(crop, kErrorTile)) tiles.push_back(measure(film, rect));
   pool(tiles, (crop.width + kErrorTile - 1) / kErrorTile);
   ErrorLook look;
   const bool known = std::ranges::all_of(tiles, [](const TileError& tile) { return tile.samples >= 2; });
-  look.bound = known ? error_bound(tiles, number) : std::numeric_limits<double>::infinity();
-  if (look.bound > goal.rel_error) look.next = choose_round(tiles, goal);
-  look.samples = predict_samples(tiles, goal, number);
+  const double noise = known ? error_bound(tiles, number) : std::numeric_limits<double>::infinity();
+  UnseenError unseen;
+  if (audit != nullptr) {
+    unseen = unseen_error(film, *audit, number);
+    look.unseen = unseen.error;
+  }
+  look.bound = std::hypot(noise, unseen.error);
+  const ErrorGoal for_noise = goal_for_noise(goal, unseen.unreachable_error);
+  if (noise > for_noise.rel_error) {
+    look.next = choose_round(tiles, for_noise);
+  } else if (look.bound > goal.rel_error) {
+    look.next = choose_doubtful(tiles, unseen.doubtful, goal);
+  }
+  if (!look.next && look.bound > goal.rel_error && noise <= for_noise.rel_error) {
+    look.warning = unseen_warning(unseen, goal.rel_error);
+  }
+  look.samples = predict_samples(tiles, for_noise, number);
   return look;
 }
 

@@ -7,14 +7,18 @@
 //   others. Where few cells carry the error of a neighbourhood of 3 x 3 tiles, its variance per sample stands in for the tile's own
 //   if that is smaller: rare events strike neighbours alike, and the tile may not have seen its own yet.
 // - Of the open tiles those with the fewest samples make up the next round.
+// - Light that an audit finds and the paths do not (film/unseen_error.h) counts like noise: cells in doubt stay open for a while,
+//   and what no sample can mend is taken off the goal, or, where little would be left of that, ends as a goal that is not claimed.
 // Every tile's decision is a function of the sums after a whole round, so it depends on no order, machine or clock.
 #pragma once
 
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "film/film.h"
+#include "film/light_audit.h"
 #include "film/pixel_rect.h"
 
 namespace fluxfarm {
@@ -38,12 +42,16 @@ struct Round {
 Round first_round(const ErrorGoal& goal, PixelRect crop);
 
 struct ErrorLook {
-  double bound = 0;           // of sqrt(relMSE), with 95 % confidence over all looks; infinite below two samples
-  std::optional<Round> next;  // nothing: done, or no tile may take more samples
-  double samples = 0;         // camera samples of the whole picture when it will be done, as far as can be told
+  // Of sqrt(relMSE), by noise with 95 % confidence over all looks and by light that an audit missed; infinite below two samples.
+  double bound = 0;
+  std::optional<Round> next;     // nothing: done, or no tile may take more samples
+  double samples = 0;            // camera samples of the whole picture when it will be done, as far as can be told from the noise
+  std::optional<double> unseen;  // of the bound the part by missing light; empty: not audited
+  std::string warning;           // why the picture ends without the claim, if missing light is the reason
 };
 
 // The decision after round `number` (1, 2, ...).
-ErrorLook look_at(const Film& film, const ErrorGoal& goal, int number);
+// Without an `audit` light that was never sampled goes unnoticed.
+ErrorLook look_at(const Film& film, const ErrorGoal& goal, int number, const LightAudit* audit = nullptr);
 
 }  // namespace fluxfarm

@@ -33,10 +33,14 @@ Shape::UvDerivatives Disk::uv_derivatives(const SurfacePoint& point, const Hit& 
   return {tangent(point, hit) * radius_, around};
 }
 
-std::optional<ShapeSample> Disk::sample(Vec3f reference, Vec2f u) const {
+AreaSample Disk::sample_area(Vec2f u) const {
   const float r = radius_ * std::sqrt(u.x);
   const float phi = kTwoPi * u.y;
-  const Vec3f position = center_ + tangent_ * (r * std::cos(phi)) + bitangent_ * (r * std::sin(phi));
+  return {center_ + tangent_ * (r * std::cos(phi)) + bitangent_ * (r * std::sin(phi)), normal_};
+}
+
+std::optional<ShapeSample> Disk::sample(Vec3f reference, Vec2f u) const {
+  const Vec3f position = sample_area(u).position;
   const Vec3f d = position - reference;
   const float distance = length(d);
   if (!(distance > 0)) return std::nullopt;

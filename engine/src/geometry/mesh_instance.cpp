@@ -43,6 +43,11 @@ float MeshInstance::pdf(Vec3f, const SurfacePoint&, std::uint32_t, Vec3f, float)
   return 0;
 }
 
+AreaSample MeshInstance::sample_area(Vec2f) const {
+  FLUXFARM_CHECK(false, "an instance of a mesh is never sampled as a light");
+  return {};
+}
+
 float MeshInstance::area() const {
   double total = 0;
   for (std::size_t i = 0; i < mesh_.triangles(); ++i) {

@@ -45,7 +45,7 @@ std::optional<ShapeSample> Rectangle::sample(Vec3f reference, Vec2f u) const {
     position = corner_ + p.x * axis_u_ + p.y * axis_v_;
     pdf_solid_angle = 1 / seen.solid_angle();
   } else {
-    position = corner_ + u.x * edge_u_ + u.y * edge_v_;
+    position = sample_area(u).position;
   }
   const Vec3f d = position - reference;
   const float distance = length(d);
@@ -62,6 +62,8 @@ float Rectangle::pdf(Vec3f reference, const SurfacePoint&, std::uint32_t, Vec3f 
   }
   return to_solid_angle(1 / area_, distance, dot(normal_, wi));
 }
+
+AreaSample Rectangle::sample_area(Vec2f u) const { return {corner_ + u.x * edge_u_ + u.y * edge_v_, normal_}; }
 
 Vec3f Rectangle::corner(int i) const {
   return corner_ + (i == 1 || i == 2 ? edge_u_ : Vec3f{}) + (i == 2 || i == 3 ? edge_v_ : Vec3f{});

@@ -24,6 +24,12 @@ struct ShapeSample {
   std::uint32_t primitive = 0;  // triangle of the mesh; 0 for other shapes
 };
 
+// A point of a surface chosen evenly over its area.
+struct AreaSample {
+  Vec3f position;
+  Vec3f normal;  // unit, front side
+};
+
 class Shape {
  public:
   virtual ~Shape() = default;
@@ -52,6 +58,9 @@ class Shape {
   // Density, at `reference`, with which sample() would choose the direction towards `point` (a hit of this shape at `distance` m in
   // the unit direction `wi`), sr^-1.
   virtual float pdf(Vec3f reference, const SurfacePoint& point, std::uint32_t primitive, Vec3f wi, float distance) const = 0;
+
+  // Chooses a point of the surface, every part of its area alike; u in [0,1)^2.
+  virtual AreaSample sample_area(Vec2f u) const = 0;
 
   virtual float area() const = 0;  // m^2
   virtual Bounds bounds() const = 0;

@@ -38,25 +38,29 @@ float Sphere::one_minus_cos(float d2) const {
   return sin2 / (1 + safe_sqrt(1 - sin2));
 }
 
+AreaSample Sphere::sample_area(Vec2f u) const {
+  const float z = 1 - 2 * u.x;
+  const float r = safe_sqrt(1 - z * z), phi = kTwoPi * u.y;
+  const Vec3f outward{r * std::cos(phi), r * std::sin(phi), z};
+  return {center_ + radius_ * outward, inward_ ? -outward : outward};
+}
+
 std::optional<ShapeSample> Sphere::sample(Vec3f reference, Vec2f u) const {
   const Vec3f to_center = center_ - reference;
   const float d2 = length_squared(to_center);
-  const float phi = kTwoPi * u.y;
   if (!is_outside(d2)) {
     // From inside: uniform over the area.
-    const float z = 1 - 2 * u.x;
-    const float r = safe_sqrt(1 - z * z);
-    const Vec3f outward{r * std::cos(phi), r * std::sin(phi), z};
-    const Vec3f position = center_ + radius_ * outward;
+    const auto [position, normal] = sample_area(u);
     const Vec3f d = position - reference;
     const float distance = length(d);
     if (!(distance > 0)) return std::nullopt;
     const Vec3f wi = d / distance;
-    const float pdf_solid_angle = to_solid_angle(1 / area(), distance, dot(outward, wi));
+    const float pdf_solid_angle = to_solid_angle(1 / area(), distance, dot(normal, wi));
     if (!(pdf_solid_angle > 0)) return std::nullopt;
-    return ShapeSample{position, inward_ ? -outward : outward, wi, distance, pdf_solid_angle};
+    return ShapeSample{position, normal, wi, distance, pdf_solid_angle};
   }
   // Uniform in the cone that the sphere fills.
+  const float phi = kTwoPi * u.y;
   const float d = std::sqrt(d2);
   const float cone = one_minus_cos(d2);
   const float one_minus_cos_theta = u.x * cone;

@@ -91,6 +91,17 @@ std::optional<ShapeSample> TriangleMesh::sample(Vec3f reference, Vec2f u) const 
   return sample_shared(static_cast<std::uint32_t>(choice.index), {choice.probability, 1 / area_}, reference, {choice.u, u.y});
 }
 
+AreaSample TriangleMesh::sample_area(Vec2f u) const {
+  const DiscreteDistribution::Choice choice = by_area_.sample(u.x);
+  return sample_triangle_area(static_cast<std::uint32_t>(choice.index), {choice.u, u.y});
+}
+
+AreaSample TriangleMesh::sample_triangle_area(std::uint32_t triangle, Vec2f u) const {
+  const auto [a, b, c] = corners(triangle);
+  const float root = std::sqrt(u.x);
+  return {a + root * (1 - u.y) * (b - a) + root * u.y * (c - a), triangle_normal(triangle)};
+}
+
 std::optional<ShapeSample> TriangleMesh::sample_triangle(std::uint32_t triangle, Vec3f reference, Vec2f u) const {
   return sample_shared(triangle, {1, 1 / triangle_area(triangle)}, reference, u);
 }

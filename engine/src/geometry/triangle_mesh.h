@@ -29,12 +29,15 @@ class TriangleMesh final : public Shape {
   Rgb vertex_color(const Hit& hit) const override;
   std::optional<ShapeSample> sample(Vec3f reference, Vec2f u) const override;
   float pdf(Vec3f reference, const SurfacePoint& point, std::uint32_t primitive, Vec3f wi, float distance) const override;
+  AreaSample sample_area(Vec2f u) const override;
   float area() const override { return area_; }
   Bounds bounds() const override;
 
   // One triangle as a light of its own: as sample() and pdf() of a mesh of nothing else.
   std::optional<ShapeSample> sample_triangle(std::uint32_t triangle, Vec3f reference, Vec2f u) const;
   float triangle_pdf(std::uint32_t triangle, Vec3f reference, const SurfacePoint& point, Vec3f wi, float distance) const;
+
+  AreaSample sample_triangle_area(std::uint32_t triangle, Vec2f u) const;
 
   struct Corners {
     Vec3f a, b, c;

@@ -47,13 +47,34 @@ Ray Camera::ray(float x, float y) const {
   return {origin_, d / scale, near_clip_ * scale, far_clip_ * scale};
 }
 
-Ray Camera::ray(float x, float y, Vec2f u) const {
+Vec3f Camera::lens_point(Vec2f u) const {
   const Vec2f p = square_to_uniform_disk(u);
-  const Vec3f lens = (aperture_radius_ * p.x) * right_ + (aperture_radius_ * p.y) * down_;
+  return (aperture_radius_ * p.x) * right_ + (aperture_radius_ * p.y) * down_;
+}
+
+Ray Camera::ray(float x, float y, Vec2f u) const {
+  const Vec3f lens = lens_point(u);
   const Vec3f d = focus_distance_ * (top_left_ + x * step_x_ + y * step_y_) - lens;  // reaches the plane in focus
   const float reach = length(d);
   const float scale = reach / focus_distance_;
   return {origin_ + lens, d / reach, near_clip_ * scale, far_clip_ * scale};
+}
+
+std::optional<Camera::Projection> Camera::project(Vec3f point, Vec2f u) const {
+  const float z = depth(point);
+  if (!(z > near_clip_ && z < far_clip_)) return std::nullopt;
+  const Vec3f lens = has_lens() ? lens_point(u) : Vec3f{};
+  const Vec3f d = point - (origin_ + lens);
+  // Where the line from the lens meets the plane in focus, brought to the plane at distance 1: there all lines through one point of
+  // the film meet.
+  const Vec3f seen = has_lens() ? d / z + lens / focus_distance_ : d / z;
+  const Vec3f from_corner = seen - top_left_;
+  const float step = length(step_x_), squared = length_squared(d);
+  // A solid angle covers cos^-3 of its size on the plane at distance 1, where cos = z / |d|.
+  const float distance = std::sqrt(squared);
+  const float per_area = distance / (z * z * z * step * length(step_y_));
+  return Projection{dot(from_corner, right_) / step, dot(from_corner, down_) / length(step_y_), origin_ + lens, near_clip_ / z,
+                    per_area};
 }
 
 }  // namespace fluxfarm

@@ -116,7 +116,9 @@ Scene::Scene(const SceneDescription& description, int threads)
     }
   }
 
-  const float radius = bounds_of(surfaces_).radius();
+  const Bounds bounds = bounds_of(surfaces_);
+  if (!bounds.empty()) center_ = bounds.center();
+  const float radius = bounds.radius();
   for (const EmitterDescription& emitter : description.emitters) {
     if (auto made = make_emitter(emitter, radius)) free_emitters_.push_back(std::move(made));
     if (const auto* constant = std::get_if<ConstantEmitterDescription>(&emitter)) {
@@ -132,10 +134,9 @@ Scene::Scene(const SceneDescription& description, int threads)
     warnings_.push_back(
         "materials: masks cast whole shadows of point, spot and directional emitters, whose light does not pass them");
   }
-  std::vector<const Emitter*> emitters;
-  for (const auto& emitter : area_emitters_) emitters.push_back(emitter.get());
-  for (const auto& emitter : free_emitters_) emitters.push_back(emitter.get());
-  emitter_choice_ = EmitterChoice(emitters);
+  for (const auto& emitter : area_emitters_) emitter_list_.push_back(emitter.get());
+  for (const auto& emitter : free_emitters_) emitter_list_.push_back(emitter.get());
+  emitter_choice_ = EmitterChoice(emitter_list_);
   std::uint32_t index = 0;
   for (Surface& surface : surfaces_) {
     if (surface.emitter != nullptr) surface.emitter_index = index++;

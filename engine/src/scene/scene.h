@@ -94,6 +94,10 @@ class Scene {
     const EnvmapEmitter* emitter = nullptr;  // nullptr: none
     float choice_probability = 0;            // in next-event estimation, the same everywhere
   };
+  // All that emit, in the order of emitters(); the constant environment is none of them.
+  const std::vector<const Emitter*>& emitter_list() const { return emitter_list_; }
+  // The middle of the box around all surfaces.
+  Vec3f center() const { return center_; }
   const EnvironmentMap& environment_map() const { return environment_map_; }
   const Camera& camera() const { return camera_; }
   const FilmDescription& film() const { return film_; }
@@ -129,6 +133,8 @@ class Scene {
   EmitterChoice emitter_choice_;
   std::optional<Rgb> environment_;
   EnvironmentMap environment_map_;
+  std::vector<const Emitter*> emitter_list_;
+  Vec3f center_;
   std::unique_ptr<RayAccelerator> accelerator_;
   Census census_;
   std::vector<std::string> warnings_;

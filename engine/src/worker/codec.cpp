@@ -44,7 +44,7 @@ RenderTilesRequest decode(const v1::RenderTiles& m) {
 }
 
 MergePassRequest::Decision decode(const v1::ErrorGoal& m) {
-  return {{m.rel_error(), m.most_samples()}, static_cast<int>(m.round())};
+  return {{m.rel_error(), m.most_samples()}, static_cast<int>(m.round()), m.scene_key()};
 }
 
 MergePassRequest decode(const v1::MergePass& m) {
@@ -106,6 +106,8 @@ void encode(const TilesDoneReply&, v1::Reply& out) { out.mutable_tiles_done(); }
 void encode(const ErrorLook& look, v1::PassMerged& out) {
   out.set_error_bound(look.bound);
   out.set_samples_expected(look.samples);
+  if (look.unseen) out.set_error_unseen(*look.unseen);
+  out.set_warning(look.warning);
   if (!look.next) return;
   v1::Round& round = *out.mutable_next_round();
   round.mutable_samples()->set_begin(look.next->samples.begin);

@@ -6,6 +6,7 @@
 #include "film/error_goal.h"
 #include "film/pass_schedule.h"
 #include "film/tile_grid.h"
+#include "integrators/audit/light_audit.h"
 #include "integrators/light_history.h"
 #include "support/parallel.h"
 #include "worker/tile_runner.h"
@@ -39,11 +40,14 @@ bool cut_to_time(SampleRange& pass, double seconds, const TimelinePoint& now) {
 
 FrameResult render_frame(const Scene& scene, const Integrator& integrator, const FrameSettings& settings,
                          const std::atomic<bool>& cancelled, const std::function<void(const TimelinePoint&)>& after_pass) {
-  FrameResult result{Film(scene.film().width, scene.film().height, settings.crop, light_layers(scene.census())), {}, {}, 0, 0};
+  FrameResult result{
+      Film(scene.film().width, scene.film().height, settings.crop, light_layers(scene.census())), {}, {}, 0, 0, {}, {}};
   const Goal& goal = settings.goal;
   const std::vector<PixelRect> tiles = make_tiles(settings.crop, goal.rel_error ? kErrorTile : settings.tile_size);
   std::vector<RayQueries> queries(static_cast<std::size_t>(settings.threads), RayQueries(scene.accelerator()));
   const Clock::time_point start = Clock::now();
+  std::optional<LightAudit> audit;
+  if (goal.rel_error) audit = audit_light(scene, settings.crop, settings.seed, settings.threads);
   std::optional<Round> round = begin(settings, tiles.size());
   for (int number = 1; round; ++number) {
     std::optional<ErrorLook> look;
@@ -58,9 +62,11 @@ FrameResult render_frame(const Scene& scene, const Integrator& integrator, const
       });
       done = pass.end;
       result.summary = result.film.summary();
-      if (goal.rel_error && done == round->samples.end) look = look_at(result.film, {*goal.rel_error, kUnbounded}, number);
       TimelinePoint point{seconds_since(start), result.summary.mean_samples, result.summary.error_noise, {}, {}};
-      if (look) {
+      if (goal.rel_error && done == round->samples.end) {
+        look = look_at(result.film, {*goal.rel_error, kUnbounded}, number, audit ? &*audit : nullptr);
+        result.error_unseen = look->unseen;
+        if (!look->warning.empty()) result.warnings.push_back(look->warning);
         point.error_bound = look->bound;
         point.expected_spp = look->samples / settings.crop.pixels();
       }

@@ -5,6 +5,7 @@
 #include <atomic>
 #include <functional>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "film/film.h"
@@ -42,6 +43,8 @@ struct FrameResult {
   std::vector<TimelinePoint> timeline;
   std::uint64_t rays = 0;
   double seconds = 0;
+  std::optional<double> error_unseen;  // ErrorLook::unseen of the last look
+  std::vector<std::string> warnings;
 };
 
 // `after_pass` is called at each pass barrier; it may be empty. Throws CancelledError when `cancelled` becomes true.

@@ -2,6 +2,7 @@
 
 #include <chrono>
 
+#include "integrators/audit/light_audit.h"
 #include "io/scene_reader.h"
 #include "worker/plan.h"
 
@@ -29,6 +30,12 @@ std::shared_ptr<const LoadedScene> load_scene(const LoadSceneRequest& request, i
   info.plan_json = plan_json(loaded->scene);
   info.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return loaded;
+}
+
+std::optional<LightAudit> AuditMemory::find(const Scene& scene, PixelRect crop, std::uint64_t seed, int threads) {
+  const std::lock_guard lock(mutex_);
+  if (!made_ || made_->crop != crop || made_->seed != seed) made_ = Made{crop, seed, audit_light(scene, crop, seed, threads)};
+  return made_->audit;
 }
 
 SceneFuture SceneStore::find(const SceneKey& key) {

@@ -7,15 +7,33 @@
 #include <mutex>
 #include <string>
 
+#include "film/light_audit.h"
 #include "integrators/integrator.h"
 #include "worker/messages.h"
 
 namespace fluxfarm {
 
+// Keeps the audit that was made last: all rounds of a job ask for the same one.
+class AuditMemory {
+ public:
+  // As audit_light(). Safe to call from many threads; they wait for each other.
+  std::optional<LightAudit> find(const Scene& scene, PixelRect crop, std::uint64_t seed, int threads);
+
+ private:
+  struct Made {
+    PixelRect crop;
+    std::uint64_t seed;
+    std::optional<LightAudit> audit;
+  };
+  std::mutex mutex_;
+  std::optional<Made> made_;
+};
+
 struct LoadedScene {
   SceneLoadedReply info;
   Scene scene;
   std::unique_ptr<Integrator> integrator;
+  std::unique_ptr<AuditMemory> audits = std::make_unique<AuditMemory>();
 };
 
 // Reads, compiles and prepares. Throws SceneError, SettingError or ResourceError.

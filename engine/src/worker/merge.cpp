@@ -65,7 +65,7 @@ void PassMerger::forget() {
   kept_.reset();
 }
 
-PassMergedReply PassMerger::merge(const MergePassRequest& request) {
+PassMergedReply PassMerger::merge(const MergePassRequest& request, const LightAudit* audit) {
   const auto begin = std::chrono::steady_clock::now();
   std::optional<KeptFilm> kept = take(request);
   const std::size_t merged = kept ? kept->tiles.size() : 0;
@@ -86,7 +86,7 @@ PassMergedReply PassMerger::merge(const MergePassRequest& request) {
       },
       [&] { reply.summary = film.summary(); },
       [&] {
-        if (request.decision) reply.look = look_at(film, request.decision->goal, request.decision->round);
+        if (request.decision) reply.look = look_at(film, request.decision->goal, request.decision->round, audit);
       },
   };
   // At the end of a job nothing else is left to do, and its owner waits.

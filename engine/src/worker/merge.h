@@ -13,7 +13,8 @@ namespace fluxfarm {
 class PassMerger {
  public:
   // Throws ResourceError when a file cannot be read or written, Error when tiles do not follow the film.
-  PassMergedReply merge(const MergePassRequest& request);
+  // A decision hears the `audit` of the scene, if there is one.
+  PassMergedReply merge(const MergePassRequest& request, const LightAudit* audit = nullptr);
   // Gives back the memory of the kept film.
   void forget();
 

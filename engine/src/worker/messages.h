@@ -14,7 +14,7 @@
 
 namespace fluxfarm {
 
-inline constexpr std::uint32_t kProtocolVersion = 2;
+inline constexpr std::uint32_t kProtocolVersion = 3;
 
 // ---------------------------------------------------------------- requests
 
@@ -47,6 +47,7 @@ struct MergePassRequest {
   struct Decision {
     ErrorGoal goal;
     int round = 1;
+    SceneKey key;  // of the scene that the tiles show, for its audit
   };
   std::optional<Decision> decision;
 };

@@ -2,6 +2,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "integrators/audit/light_audit.h"
+
 namespace fluxfarm {
 namespace {
 
@@ -17,6 +19,7 @@ std::string plan_json(const Scene& scene) {
   const Census& census = scene.census();
   const std::size_t emitters =
       census.area_emitters + census.point_emitters + census.spot_emitters + census.directional_emitters + census.environment_map;
+  const AuditNeed audit = audit_need(scene);
   const nlohmann::json plan = {
       {"integrator", "path"},
       {"census",
@@ -43,6 +46,7 @@ std::string plan_json(const Scene& scene) {
         part("next-event estimation", emitters > 0, count(emitters, "emitter") + " that can be sampled"),
         part("emitter choice", emitters > 1, count(emitters, "emitter") + " to choose from"),
         part("emitter tree", scene.emitters().by_place(), count(scene.emitters().candidates(), "emitter or triangle")),
+        part("light-side audit", audit.kind == AuditNeed::kNeeded, audit.reason),
         part("environment", census.environment, census.environment ? "a constant environment" : "no environment"),
         part("environment map", census.environment_map, census.environment_map ? "an envmap" : "no envmap"),
         part("tangent frames", census.anisotropic_materials || census.normal_maps,

@@ -84,6 +84,10 @@ class Worker {
     std::visit([&](auto& body) { handle(id, std::move(body)); }, request.body);
   }
 
+  void reply_not_loaded(std::uint64_t id, const SceneKey& key) {
+    reply(id, FailureReply{FailureKind::kResource, "scene " + key + " is not loaded here, LoadScene first"});
+  }
+
   void handle(std::uint64_t id, UnknownRequest) {
     reply(id, FailureReply{FailureKind::kInternal, "request not known to protocol version " + std::to_string(kProtocolVersion)});
   }
@@ -116,7 +120,17 @@ class Worker {
     });
   }
   void handle(std::uint64_t id, MergePassRequest request) {
-    start(id, [this, request = std::move(request)]() -> ReplyBody { return merger_.merge(request); });
+    SceneFuture scene;
+    if (request.decision) {
+      scene = scenes_.find(request.decision->key);
+      if (!scene.valid()) return reply_not_loaded(id, request.decision->key);
+    }
+    start(id, [this, scene, request = std::move(request)]() -> ReplyBody {
+      if (!scene.valid()) return merger_.merge(request);
+      const LoadedScene& loaded = *scene.get();
+      const std::optional<LightAudit> audit = loaded.audits->find(loaded.scene, request.crop, request.info.seed, threads_);
+      return merger_.merge(request, audit ? &*audit : nullptr);
+    });
   }
   void handle(std::uint64_t id, WriteTileRequest request) {
     start(id, [request = std::move(request)]() -> ReplyBody {
@@ -147,7 +161,7 @@ class Worker {
     const auto request = std::make_shared<const RenderTilesRequest>(std::move(body));
     const SceneFuture scene = scenes_.find(request->key);
     if (!scene.valid()) {
-      reply(id, FailureReply{FailureKind::kResource, "scene " + request->key + " is not loaded here, LoadScene first"});
+      reply_not_loaded(id, request->key);
       return;
     }
     if (request->tiles.empty()) {

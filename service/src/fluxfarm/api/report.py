@@ -71,8 +71,12 @@ async def report(job_id: JobId, farm: Farm) -> ReportOut:
         rays_per_second=record.rays / running_s if running_s > 0 else None,
         non_finite_samples=record.non_finite_samples,
         seconds=await _seconds_by_state(farm, record),
-        # Path tracing has no bias of its own; energy that it never sampled is not audited, so that is left open.
-        error={"noise": None if record.newest is None else record.newest.error_noise, "bias": 0.0, "unseen": None},
+        # Path tracing has no bias of its own.
+        error={
+            "noise": None if record.newest is None else record.newest.error_noise,
+            "bias": 0.0,
+            "unseen": None if record.newest is None else record.newest.error_unseen,
+        },
         timeline=[PointOut(seconds=r.running_s, spp=r.mean_samples, error=r.error_noise) for r in revisions],
         revisions=[revision_out(revision) for revision in revisions],
         plan=None if record.facts is None else record.facts.plan,

@@ -44,7 +44,7 @@ class Measured:
 
     `round` is None once an error goal needs no further one. `spp` are the samples taken of each of its pixels,
     `sample_s` the seconds that one more of each will take by the rate so far (0: unknown). `error_bound` is there at a
-    decision."""
+    decision, and `unseen_warning` at one that ends the job because paths cannot find all of its light."""
 
     round: Round | None
     spp: int
@@ -52,6 +52,7 @@ class Measured:
     sample_s: float
     error_noise: float | None
     error_bound: float | None
+    unseen_warning: str | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -108,6 +109,8 @@ def _unreached(goal: Goal, measured: Measured) -> str | None:
     if goal.rel_error is not None:
         if measured.error_bound is not None and measured.error_bound <= goal.rel_error:
             return None
+        if measured.unseen_warning is not None:
+            return measured.unseen_warning
         error = "unknown" if measured.error_noise is None else f"{measured.error_noise:.4g}"
         return (
             f"goal not reached with 95 % confidence: the error is about {error} after at most {measured.spp} samples "

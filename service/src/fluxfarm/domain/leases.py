@@ -69,7 +69,8 @@ class Decision:
 
 @dataclass(frozen=True, slots=True)
 class MergeLease(Lease):
-    """Add finished tiles to the film and write the image, its preview and, where a path is given, the film."""
+    """Add finished tiles to the film and write the image, its preview and, where a path is given, the film. `scene` is
+    there where a decision is due: the engine audits it."""
 
     width: int
     height: int
@@ -82,6 +83,7 @@ class MergeLease(Lease):
     info: ImageInfo
     passes: int
     decision: Decision | None
+    scene: SceneRef | None
 
 
 @dataclass(frozen=True, slots=True)
@@ -143,7 +145,7 @@ class TilesFinished:
 
 @dataclass(frozen=True, slots=True)
 class Merged:
-    """The files of the lease are written and closed, but not yet synced. The last three: as in Revision."""
+    """The files of the lease are written and closed, but not yet synced. The last five: as in Revision."""
 
     lease: MergeLease
     min_samples: int
@@ -156,6 +158,8 @@ class Merged:
     error_bound: float | None
     next_round: Round | None
     samples_expected: float | None
+    error_unseen: float | None
+    unseen_warning: str | None
 
 
 @dataclass(frozen=True, slots=True)

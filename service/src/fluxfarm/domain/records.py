@@ -46,6 +46,8 @@ class Revision:
 
     Where an error goal was decided, `error_bound` is the bound that may end the job, `next_round` what follows (None:
     no tile may take more samples, or the goal is reached) and `samples_expected` the camera samples of the whole job.
+    `error_unseen` is the part of the bound by light that paths did not find (None: not audited), and `unseen_warning`
+    says why the job ends without its goal, if that is the reason.
     """
 
     number: int
@@ -65,6 +67,8 @@ class Revision:
     error_bound: float | None = None
     next_round: Round | None = None
     samples_expected: float | None = None
+    error_unseen: float | None = None
+    unseen_warning: str | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -136,6 +136,7 @@ class Dispatcher:
             return None
         fence, facts = self.new_fence(), run.facts
         run.single_lease = fence
+        decision = run.decision(ready)
         tiles = run.loose_tiles + tuple(sha256 for work in ready for sha256 in work.tiles())
         return MergeLease(
             fence=fence,
@@ -150,7 +151,8 @@ class Dispatcher:
             png_out=self._blobs.scratch(run.id, f"{fence}.png"),
             info=ImageInfo(run.id, run.request.bundle.digest(), facts.integrator, run.request.seed),
             passes=ready[-1].index + 1,
-            decision=run.decision(ready),
+            decision=decision,
+            scene=None if decision is None else run.scene,
         )
 
 

@@ -40,6 +40,8 @@ async def publish(
         error_bound=merged.error_bound,
         next_round=merged.next_round,
         samples_expected=merged.samples_expected,
+        error_unseen=merged.error_unseen,
+        unseen_warning=merged.unseen_warning,
     )
     kept = {film_before} if before is None else {film_before, before.exr, before.png}
     try:

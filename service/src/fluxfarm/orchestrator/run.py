@@ -123,8 +123,16 @@ class JobRun:
         open_passes = len(self._passes) if barriers else sum(not p.complete for p in self._passes.values())
         if open_passes >= (1 if barriers else MOST_OPEN_PASSES):
             return None
-        error, bound = (None, None) if self._newest is None else (self._newest.error_noise, self._newest.error_bound)
-        measured = Measured(self._round, self._spp, self.running_s(now), self._sample_s(now), error, bound)
+        newest = self._newest
+        measured = Measured(
+            self._round,
+            self._spp,
+            self.running_s(now),
+            self._sample_s(now),
+            error_noise=None if newest is None else newest.error_noise,
+            error_bound=None if newest is None else newest.error_bound,
+            unseen_warning=None if newest is None else newest.unseen_warning,
+        )
         samples = next_pass(self._goal, self.request.limits, measured)
         if isinstance(samples, Stop):
             self._stop = samples

@@ -7,7 +7,6 @@ from pathlib import Path
 
 from fluxfarm.adapters.protocol import engine_pb2 as pb
 from fluxfarm.domain.leases import (
-    Decision,
     FailureKind,
     ImageInfo,
     Lease,
@@ -29,7 +28,7 @@ from fluxfarm.domain.records import SceneFacts
 from fluxfarm.domain.schedule import Round, SampleRange
 from fluxfarm.domain.tiles import PixelRect
 
-PROTOCOL_VERSION = 2
+PROTOCOL_VERSION = 3
 MAX_FRAME_BYTES = 64 << 20
 LENGTH = struct.Struct("<I")
 
@@ -180,14 +179,20 @@ def _merge_pass(work: MergeLease) -> pb.MergePass:
         exr_out=str(work.exr_out),
         png_out=str(work.png_out),
         info=_info(work.info),
-        error_goal=_error_goal(work.decision),
+        error_goal=_error_goal(work),
     )
 
 
-def _error_goal(decision: Decision | None) -> pb.ErrorGoal | None:
-    if decision is None:
+def _error_goal(work: MergeLease) -> pb.ErrorGoal | None:
+    decision = work.decision
+    if decision is None or work.scene is None:
         return None
-    return pb.ErrorGoal(rel_error=decision.rel_error, round=decision.round, most_samples=decision.most_samples)
+    return pb.ErrorGoal(
+        rel_error=decision.rel_error,
+        round=decision.round,
+        most_samples=decision.most_samples,
+        scene_key=work.scene.key,
+    )
 
 
 def _merged(work: MergeLease, body: pb.PassMerged) -> Merged:
@@ -208,6 +213,8 @@ def _merged(work: MergeLease, body: pb.PassMerged) -> Merged:
         error_bound=body.error_bound if decided else None,
         next_round=following,
         samples_expected=body.samples_expected if decided else None,
+        error_unseen=body.error_unseen if body.HasField("error_unseen") else None,
+        unseen_warning=body.warning or None,
     )
 
 

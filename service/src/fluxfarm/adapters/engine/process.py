@@ -14,7 +14,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 from fluxfarm.adapters.engine import codec
-from fluxfarm.domain.leases import Lease, LeaseLost, Outcome, PrepareLease, RenderLease
+from fluxfarm.domain.leases import Lease, LeaseLost, MergeLease, Outcome, PrepareLease, RenderLease
 
 log = logging.getLogger(__name__)
 
@@ -76,11 +76,11 @@ class EngineProcess:
 
     def submit(self, lease: Lease) -> None:
         """Send a lease, preceded by its scene if the process was not last told to keep that one."""
-        scene = lease.scene if isinstance(lease, PrepareLease | RenderLease) else None
-        if isinstance(lease, RenderLease) and lease.scene.key != self._loaded_key:
+        scene = lease.scene if isinstance(lease, PrepareLease | RenderLease | MergeLease) else None
+        if scene is not None and not isinstance(lease, PrepareLease) and scene.key != self._loaded_key:
             request_id = next(self._ids)
             self._scene_requests[request_id] = lease
-            self._send(codec.load_scene(request_id, lease.scene))
+            self._send(codec.load_scene(request_id, scene))
         if scene is not None:
             self._loaded_key = scene.key
         if not self._held:

@@ -102,6 +102,10 @@ MIGRATIONS: tuple[str, ...] = (
         samples_done = 0, rays = 0, non_finite_samples = 0, passes_opened = 0 WHERE id IN (SELECT id FROM renewed);
     DROP TABLE renewed
     """,
+    """
+    ALTER TABLE revisions ADD COLUMN error_unseen REAL;
+    ALTER TABLE revisions ADD COLUMN unseen_warning TEXT
+    """,
 )
 
 metadata = MetaData()
@@ -131,8 +135,8 @@ tiles = _table("tiles", "job_id pass_index tile", "job_id sha256", "pass_index t
 revisions = _table(
     "revisions",
     "job_id number",
-    "job_id exr png film next_round",
+    "job_id exr png film next_round unseen_warning",
     "number passes min_samples max_samples non_finite_samples exr_bytes",
-    "mean_samples samples_expected error_noise error_bound mean_r mean_g mean_b running_s at",
+    "mean_samples samples_expected error_noise error_bound error_unseen mean_r mean_g mean_b running_s at",
 )
 events = _table("events", "job_id seq", "job_id kind data", "seq", "at")

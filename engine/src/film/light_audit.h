@@ -1,0 +1,27 @@
+// What an estimate from the side of the light says about a picture: by cells, the tiles of a picture with an error goal.
+//
+// It sees surfaces with a continuous lobe that the camera sees directly, and of their light all that comes from emitters which can
+// be followed; a path from the camera sees that and more. Radiances are means over R, G, B, as relMSE weighs them, and over the
+// pixels of the cell, in W m^-2 sr^-1.
+#pragma once
+
+#include <vector>
+
+namespace fluxfarm {
+
+struct LightAudit {
+  struct Cell {
+    // Light that a path from the camera finds in the long run, and the variance of that estimate.
+    double radiance = 0, variance = 0;
+    // Light that no path from the camera can find.
+    double unreachable = 0;
+    // Share of the picture there that is seen in or through smooth surfaces, where the audit is blind. Zero where nothing is
+    // unreachable: nobody asks.
+    double blind = 0;
+  };
+  std::vector<Cell> cells;  // of make_tiles(crop, kErrorTile), in that order
+  // Share of the light arriving at surfaces with a continuous lobe, anywhere in the scene, that no path from the camera can find.
+  double unreachable_share = 0;
+};
+
+}  // namespace fluxfarm

@@ -1,0 +1,89 @@
+#include "film/unseen_error.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iomanip>
+#include <sstream>
+
+#include "film/error_bound.h"
+#include "film/error_goal.h"
+#include "film/tile_grid.h"
+
+namespace fluxfarm {
+namespace {
+
+// Probability that chance makes any cell of a picture look as if light was missing, over all looks: k-th look, 2^-k of it.
+constexpr double kFalseAlarm = 0.01;
+// So much more than the paths found is no difference: the edges of cells are not exactly those of the pixel filter, and some
+// materials are not exactly reciprocal.
+constexpr double kTolerance = 0.05;
+
+// What the paths found in a cell.
+struct Found {
+  double radiance = 0, variance = 0;  // of the mean over pixels, R, G, B
+  double steepness = 0;               // share of relMSE that missing light makes, at most, per radiance
+};
+
+Found found_in(const Film& film, PixelRect cell) {
+  Found found;
+  for (int y = cell.y; y < cell.y + cell.height; ++y) {
+    for (int x = cell.x; x < cell.x + cell.width; ++x) {
+      const PixelEstimate pixel = film.estimate(x, y);
+      for (int c = 0; c < 3; ++c) {
+        const double value = std::max(pixel.mean[c], 0.0);
+        found.radiance += value / 3;
+        found.variance += pixel.variance[c] / 3;  // at most: as if the channels rose and fell together
+        found.steepness += 0.5 / (value + std::sqrt(value * value + 1e-2)) / 3;
+      }
+    }
+  }
+  const double pixels = cell.pixels();
+  return {found.radiance / pixels, found.variance / (pixels * pixels), found.steepness / pixels};
+}
+
+}  // namespace
+
+UnseenError unseen_error(const Film& film, const LightAudit& audit, int number) {
+  const std::vector<PixelRect> cells = make_tiles(film.crop(), kErrorTile);
+  const double z = gaussian_upper_quantile(std::ldexp(kFalseAlarm, -number) / static_cast<double>(cells.size()));
+  // Behind smooth surfaces the share of missing light is taken to be that of the whole scene.
+  const double share = audit.unreachable_share;
+  const double blind_loss = share < 1 ? std::min(1.0, share / (4 * (1 - share))) : 1.0;
+  UnseenError unseen;
+  double error = 0, unreachable_error = 0, missing_light = 0, light = 0;
+  for (std::uint32_t i = 0; i < cells.size(); ++i) {
+    const LightAudit::Cell& audited = audit.cells[i];
+    const Found found = found_in(film, cells[i]);
+    const double pixels = cells[i].pixels();
+    const double excess = audited.radiance - (1 + kTolerance) * found.radiance;
+    const bool doubtful = excess > z * std::sqrt(audited.variance + found.variance);
+    if (doubtful) unseen.doubtful.push_back(i);
+    const double missing = audited.unreachable + (doubtful ? audited.radiance - found.radiance : 0.0);
+    const double lost = audited.unreachable * found.steepness + audited.blind * blind_loss;
+    unreachable_error += pixels * std::min(1.0, lost);
+    error += pixels * std::min(1.0, lost + (missing - audited.unreachable) * found.steepness);
+    missing_light += pixels * missing;
+    light += pixels * (found.radiance + missing);
+  }
+  unseen.error = std::sqrt(error / film.crop().pixels());
+  unseen.unreachable_error = std::sqrt(unreachable_error / film.crop().pixels());
+  if (light > 0) unseen.energy = missing_light / light;
+  return unseen;
+}
+
+std::string unseen_warning(const UnseenError& unseen, double goal) {
+  const bool never = 2 * unseen.unreachable_error * unseen.unreachable_error >= unseen.error * unseen.error;
+  std::ostringstream text;
+  text << std::setprecision(3) << "goal not reached: light that path tracing " << (never ? "cannot find" : "finds too rarely")
+       << " makes an error of up to " << unseen.error << ", expected at most " << goal << " in all; about "
+       << std::lround(100 * unseen.energy) << " % of the picture's light is missing";
+  if (unseen.energy == 0) text << " where surfaces are seen directly, and an unknown part in mirrors and glass";
+  text << (never
+               ? "; point, spot and directional emitters shine over mirrors or through glass: give them a size, as a small sphere "
+                 "or disk, or take the smooth surfaces out of their way; this version has no method with photons"
+               : "; it arrives over paths that are hardly ever sampled: enlarge the emitters or openings that it comes through, or "
+                 "judge a long picture with a goal of samples yourself");
+  return text.str();
+}
+
+}  // namespace fluxfarm

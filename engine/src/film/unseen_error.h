@@ -1,0 +1,31 @@
+// The error that light makes which path tracing did not find, as far as an estimate from the side of the light tells.
+//
+// A cell misses what no path can find, and, where the side of the light clearly has more, the difference. If light of mean m is
+// missing from pixels of value c, their share of relMSE is x^2 / ((c + x)^2 + 1e-2) for a pixel that misses x; however m is spread
+// over pixels of that value, the mean share is at most m / (2 (c + sqrt(c^2 + 1e-2))) (docs/theory.md). The error is the root of
+// the mean of that over the picture: an upper bound, like that of the noise.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "film/film.h"
+#include "film/light_audit.h"
+
+namespace fluxfarm {
+
+struct UnseenError {
+  double error = 0;                     // bound of sqrt(relMSE) by missing light; 0: nothing was found missing
+  double unreachable_error = 0;         // the part of it that no sample can mend
+  double energy = 0;                    // share of the picture's light that is missing, as estimated
+  std::vector<std::uint32_t> doubtful;  // cells where more samples may find what is missing, rising
+};
+
+// At look `number` (1, 2, ...). `audit` is one of the film's crop.
+UnseenError unseen_error(const Film& film, const LightAudit& audit, int number);
+
+// Why a picture misses that goal (sqrt(relMSE)), and what its owner can do. Something must be missing.
+std::string unseen_warning(const UnseenError& unseen, double goal);
+
+}  // namespace fluxfarm

@@ -1,0 +1,112 @@
+// What light that path tracing did not find means for the error.
+#include "film/unseen_error.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+
+#include "film/error_goal.h"
+#include "film/tile_grid.h"
+
+namespace fluxfarm {
+namespace {
+
+constexpr PixelRect kCrop{8, 4, 64, 32};  // two cells
+
+// Two replicates a pixel that differ by 2 `spread` around value(x).
+Film picture(const std::function<double(int)>& value, double spread) {
+  Film film(100, 40, kCrop);
+  TileSums sums{kCrop, {0, 2}, 0, {}, {}, 0};
+  for (int pixel = 0; pixel < kCrop.pixels(); ++pixel) {
+    const double v = value(kCrop.x + pixel % kCrop.width);
+    for (const double sign : {-1, 1}) sums.radiance.insert(sums.radiance.end(), 3, static_cast<float>(v + sign * spread));
+    sums.features.insert(sums.features.end(), kFeatures, 0.0f);
+  }
+  film.merge(sums);
+  return film;
+}
+
+LightAudit audit_of(LightAudit::Cell left, LightAudit::Cell right, double share = 0) { return {{left, right}, share}; }
+
+TEST(UnseenError, IsZeroWhereNothingIsMissing) {
+  const Film film = picture([](int) { return 0.5; }, 0.1);
+  const UnseenError unseen = unseen_error(film, audit_of({0.5, 1e-4, 0, 0}, {0.1, 1e-4, 0, 0}), 1);
+  EXPECT_EQ(unseen.error, 0);
+  EXPECT_EQ(unseen.energy, 0);
+  EXPECT_TRUE(unseen.doubtful.empty());
+}
+
+// However the missing light lies in its cell, the error that it makes is at or below the bound; some way it comes close.
+TEST(UnseenError, BoundsTheErrorOfLightThatIsMissing) {
+  const double found = 0.2, missing = 0.02;
+  const Film film = picture([&](int) { return found; }, 0);
+  const UnseenError unseen = unseen_error(film, audit_of({found, 1e-6, missing, 0}, {found, 1e-6, missing, 0}, 0.1), 1);
+  EXPECT_NEAR(unseen.energy, missing / (found + missing), 1e-6);
+  EXPECT_TRUE(unseen.doubtful.empty()) << "more samples do not help";
+  EXPECT_EQ(unseen.error, unseen.unreachable_error);
+  double worst = 0;
+  for (double part = 1; part > 0.01; part *= 0.9) {  // all of it in that part of the pixels
+    const double x = missing / part, truth = found + x;
+    worst = std::max(worst, std::sqrt(part * x * x / (truth * truth + 1e-2)));
+  }
+  EXPECT_LE(worst, unseen.error + 1e-9);
+  EXPECT_GT(worst, 0.99 * unseen.error);
+  // Twin: taken as spread evenly, the error would be far less than it may be.
+  const double even = missing / std::sqrt((found + missing) * (found + missing) + 1e-2);
+  EXPECT_LT(even, 0.6 * worst);
+}
+
+TEST(UnseenError, DoubtsOnlyWhatIsClear) {
+  const Film film = picture([](int) { return 0.5; }, 0.2);
+  // The mean of 1024 pixels has a standard error of 0.2 / 32.
+  const auto doubtful = [&](double radiance, double standard_error) {
+    return unseen_error(film, audit_of({radiance, standard_error * standard_error, 0, 0}, {}), 1).doubtful;
+  };
+  EXPECT_TRUE(doubtful(0.52, 1e-6).empty()) << "within the tolerance";
+  EXPECT_TRUE(doubtful(0.54, 1e-6).empty()) << "noise of the paths";
+  EXPECT_TRUE(doubtful(0.8, 0.1).empty()) << "noise of the particles";
+  EXPECT_EQ(doubtful(0.8, 0.05), (std::vector<std::uint32_t>{0}));
+  EXPECT_EQ(unseen_error(film, audit_of({0.8, 0.0025, 0, 0}, {}), 1).unreachable_error, 0);
+}
+
+TEST(UnseenError, CountsWhatIsSeenInMirrors) {
+  const Film film = picture([](int) { return 0.5; }, 0);
+  const UnseenError all = unseen_error(film, audit_of({0, 0, 0, 1}, {0, 0, 0, 0}, 1), 1);
+  EXPECT_NEAR(all.error, std::sqrt(0.5), 1e-9) << "half of the picture shows light of which nothing is known";
+  const UnseenError part = unseen_error(film, audit_of({0, 0, 0, 1}, {0, 0, 0, 1}, 0.1), 1);
+  EXPECT_NEAR(part.error, std::sqrt(0.1 / (4 * 0.9)), 1e-9);
+  EXPECT_NE(unseen_warning(all, 0.1).find("mirrors"), std::string::npos);
+}
+
+// No sample finds what is unreachable: the picture ends, and says why.
+TEST(UnseenError, EndsAPictureThatCannotMeetItsGoal) {
+  const Film film = picture([](int) { return 0.5; }, 0.001);
+  const LightAudit audit = audit_of({0.5, 1e-6, 0.1, 0}, {0.5, 1e-6, 0, 0}, 0.05);
+  const ErrorLook look = look_at(film, {0.05}, 1, &audit);
+  EXPECT_FALSE(look.next.has_value());
+  EXPECT_GT(look.bound, 0.05);
+  EXPECT_GT(look.unseen.value(), 0.05);
+  EXPECT_NE(look.warning.find("cannot find"), std::string::npos) << look.warning;
+  // Twin: without the audit the goal is claimed.
+  const ErrorLook blind = look_at(film, {0.05}, 1);
+  EXPECT_LE(blind.bound, 0.05);
+  EXPECT_FALSE(blind.unseen.has_value());
+  EXPECT_TRUE(blind.warning.empty());
+}
+
+// A little that is missing leaves room for noise, but less.
+TEST(UnseenError, IsTakenOffTheGoal) {
+  const LightAudit audit = audit_of({0.5, 1e-6, 0.002, 0}, {0.5, 1e-6, 0.002, 0}, 0.01);
+  const Film film = picture([](int) { return 0.5; }, 0.02);
+  const double noise = look_at(film, {1.0}, 1).bound, unseen = look_at(film, {1.0}, 1, &audit).unseen.value();
+  ASSERT_LT(unseen, noise) << "else the goal is given up";
+  const double both = std::hypot(noise, unseen);
+  EXPECT_FALSE(look_at(film, {1.01 * both}, 1, &audit).next.has_value());
+  const ErrorLook look = look_at(film, {0.99 * both}, 1, &audit);
+  EXPECT_TRUE(look.next.has_value()) << "noise alone would meet it";
+  EXPECT_LT(noise, 0.99 * both);
+}
+
+}  // namespace
+}  // namespace fluxfarm
