@@ -6,12 +6,10 @@
 
 #include "integrators/audit/key_random.h"
 #include "integrators/path/path_vertex.h"
+#include "integrators/roulette.h"
 
 namespace fluxfarm {
 namespace {
-
-// As path tracing caps it: a particle between perfect reflectors ends, too.
-constexpr float kMaxSurvival = 0.95f;
 
 DiscreteDistribution choice_of(const std::vector<const Emitter*>& emitters) {
   std::vector<double> weights;

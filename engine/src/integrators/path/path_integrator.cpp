@@ -9,6 +9,7 @@
 #include "integrators/path/multiple_importance.h"
 #include "integrators/path/path_vertex.h"
 #include "integrators/path/pixel_groups.h"
+#include "integrators/roulette.h"
 
 namespace fluxfarm {
 namespace {
@@ -18,9 +19,6 @@ enum BounceDimension : std::uint32_t { kEmitterPoint, kDirection, kEmitterChoice
 constexpr std::uint32_t dimension_of(int depth, BounceDimension use) {
   return 1 + static_cast<std::uint32_t>(depth) * kBounceDimensions + use;
 }
-
-// Survival is capped so that a path between perfect reflectors ends, too.
-constexpr float kMaxSurvival = 0.95f;
 
 struct Path {
   Rgb throughput{1.0f};

@@ -9,6 +9,7 @@
 #include "integrators/path/path_vertex.h"
 #include "integrators/path/pixel_groups.h"
 #include "integrators/path/shadow_rays.h"
+#include "integrators/roulette.h"
 #include "media/channel_mis.h"
 #include "sampling/sampler.h"
 
@@ -22,11 +23,6 @@ constexpr std::uint32_t kChannelDimension = kLensDimension - 1;
 constexpr std::uint32_t dimension_of(int step, StepDimension use) {
   return 1 + static_cast<std::uint32_t>(step) * kStepDimensions + use;
 }
-
-// Survival at surfaces is capped as PathIntegrator caps it. A path in a white medium collides hundreds of times without losing
-// anything: ending it with 5 % at each collision would leave a few paths with enormous weights, so the cap there only makes sure
-// that a path in an endless medium ends.
-constexpr float kMaxSurvivalAtSurface = 0.95f, kMaxSurvivalInMedium = 0.999f;
 
 struct VolumePath {
   Rgb throughput{1.0f};
@@ -154,7 +150,7 @@ class VolumePathGroup {
     const Vec3f direction = phase.sample(ray.direction, u_direction_[i]);
     path.reference = reference;
     path.history.scatter_in_medium();
-    return bounce(i, step, {position, direction}, phase.value(ray.direction, direction), false, kMaxSurvivalInMedium);
+    return bounce(i, step, {position, direction}, phase.value(ray.direction, direction), false);
   }
 
   bool scatter_at_surface(std::size_t i, int step, const PathVertex& vertex, const Scene::Boundary& boundary) {
@@ -181,11 +177,11 @@ class VolumePathGroup {
     path.medium = boundary.towards(direction, vertex.point, path.medium);
     path.reference = vertex.emitter_reference();
     path.history.scatter_at_surface(*scatter);
-    return bounce(i, step, {vertex.origin_towards(direction), direction}, scatter->pdf, scatter->delta, kMaxSurvivalAtSurface);
+    return bounce(i, step, {vertex.origin_towards(direction), direction}, scatter->pdf, scatter->delta);
   }
 
   // Lets the path go on along `ray`, or ends it by Russian roulette.
-  bool bounce(std::size_t i, int step, const Ray& ray, float direction_pdf, bool delta, float max_survival) {
+  bool bounce(std::size_t i, int step, const Ray& ray, float direction_pdf, bool delta) {
     VolumePath& path = path_[i];
     path.direction_pdf = direction_pdf;
     path.delta = delta;
@@ -193,7 +189,7 @@ class VolumePathGroup {
     path.bounce_distance = 0;
     rays_[i] = ray;
     if (++path.depth < method_.rr_depth) return true;
-    const float survival = std::min(max_component(path.throughput) * path.eta_scale, max_survival);
+    const float survival = std::min(max_component(path.throughput) * path.eta_scale, kMaxSurvival);
     if (sampler_.draw_1d(dimension_of(step, kRoulette), i) >= survival) return false;
     path.throughput *= 1 / survival;
     return true;
