@@ -7,7 +7,8 @@ import numpy as np
 SIDE = 708  # quads along each side: 2 x 708^2 = 1,002,528 triangles
 
 SCENE = """<scene version="3.0.0">
-  <integrator type="path"/>
+  <default name="max_depth" value="-1"/>
+  <integrator type="path"><integer name="max_depth" value="$max_depth"/></integrator>
   <sensor type="perspective">
     <float name="fov" value="40"/>
     <transform name="to_world"><lookat origin="0, 2.2, 4.2" target="0, 0.2, 0" up="0, 1, 0"/></transform>
