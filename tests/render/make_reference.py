@@ -7,7 +7,7 @@ Needs a Python with mitsuba and numpy (a peer for references only, no dependency
     PEER_PYTHON tests/render/make_reference.py veach-bidir --size 256x256 --spp 1024 --runs 40
     PEER_PYTHON tests/render/make_reference.py veach-ajar --size 128x80 --spp 64 --runs 32
     PEER_PYTHON tests/render/make_reference.py glass-of-milk --size 96x64 --spp 64 --runs 32
-    PEER_PYTHON tests/render/make_reference.py gltf-cornell-glass --size 128x128 --spp 64 --runs 32
+    PEER_PYTHON tests/render/make_reference.py gltf-cornell-glass --size 128x128 --spp 64 --runs 20
 
 Equal depth: the scenes' own max_depth. The film samples beyond its border (sample_border), as pixel filters do here.
 What is changed in a scene for both renderers: outside_variants.py. For glTF, Mitsuba renders

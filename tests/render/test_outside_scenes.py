@@ -6,7 +6,7 @@ blocks and channels together reject a right picture with a probability of 1 % (S
 the median absolute deviation. veach-mis has some, too (by way of its sharpest mirror, about one bright sample in 10^5),
 so that its means need many samples in all before their errors can be believed.
 
-veach-ajar and glass-of-milk are noisy everywhere: their whole pictures are compared, too, where a
+veach-ajar, glass-of-milk and gltf-cornell-glass are noisy everywhere: their whole pictures are compared, too, where a
 wrong brightness shows that the blocks would hide.
 """
 
@@ -22,7 +22,7 @@ from conftest import beauty, outside_scene, render_alone
 from outside_variants import as_compared
 
 REFERENCES = Path(__file__).parent / "references"
-NOISY = [("glass-of-milk", 16), ("veach-ajar", 32)]  # samples a pixel and run
+NOISY = [("glass-of-milk", 16), ("gltf-cornell-glass", 16), ("veach-ajar", 32)]  # samples a pixel and run
 MAX_Z = 4.0
 
 
@@ -141,6 +141,7 @@ def test_cornell_box_has_the_published_means(tmp_path: Path) -> None:
         ("veach-mis", "mean", 32, 512),
         ("veach-bidir", "median", 32, 512),
         ("glass-of-milk", "mean", 32, 128),
+        ("gltf-cornell-glass", "mean", 32, 128),
         ("veach-ajar", "mean", 32, 128),
     ],
 )
