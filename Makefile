@@ -46,8 +46,8 @@ format: $(VENV)/.ready
 	$(VENV)/bin/ruff check --fix --config service/pyproject.toml service tests
 	$(VENV)/bin/ruff format --config service/pyproject.toml service tests
 
-# Ray rates against bare Embree, on outside scenes and a million triangles; a thousand emitters against ten; and Mitsuba 3 where
-# PEER_PYTHON has it.
+# Ray rates against bare Embree; a thousand emitters against ten; time to equal error against Mitsuba 3, Cycles and LuxCore where
+# PEER_PYTHON, CYCLES_PYTHON, LUXCORE_PYTHON have them.
 bench: build
 	$(PYTHON) tests/benchmarks/bench.py --out out/bench.json
 

@@ -9,7 +9,7 @@ import subprocess
 import sys
 from pathlib import Path
 
-from fluxfarm.api.report import draw
+from fluxfarm.api.chart import Curve, draw
 
 ROOT = Path(__file__).parents[2]
 ENGINE = Path(sys.executable).with_name("fluxfarm-engine")
@@ -36,7 +36,8 @@ def main() -> None:
         subprocess.run([ENGINE, "render", scene, *arguments], check=True)
         timeline = json.loads(report.read_text())["timeline"]
         chart = options.out / f"chart-{name}.svg"
-        chart.write_text(draw([(point["seconds"], point["error"]) for point in timeline if point["error"]]))
+        curve = Curve([(point["seconds"], point["error"]) for point in timeline if point["error"]])
+        chart.write_text(draw([curve], "time of rendering, seconds", "estimated relative error (noise)"))
         print(chart)
 
 

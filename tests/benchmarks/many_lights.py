@@ -1,10 +1,15 @@
 """A hall with many lamps: their number cuts the same lit area and the same power into more pieces. Never committed."""
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
+from peers import Render, rel_mse
 from scene_head import scene_head
 
+# A thousand emitters may cost so many times the time to equal error of ten.
+MOST_FOR_A_THOUSAND = 2.0
+SPP = 64
 INTEGRATOR = '<integrator type="path"><boolean name="hide_emitters" value="true"/></integrator>'
 HALL = """  <bsdf type="twosided" id="grey">
     <bsdf type="diffuse"><rgb name="reflectance" value="0.5, 0.5, 0.5"/></bsdf>
@@ -46,3 +51,25 @@ def write(folder: Path, count: int) -> Path:
     scene = folder / "scene.xml"
     scene.write_text("".join(parts) + "</scene>\n")
     return scene
+
+
+def compare(folder: Path, render: Render) -> dict[str, Any]:
+    """The same hall lit by ten lamps and by a thousand: time to equal error of the second over that of the first."""
+    result: dict[str, Any] = {"spp": SPP}
+    for count in (10, 1000):
+        scene = write(folder / f"lights-{count}", count)
+        # Its own error adds an eighth to each of the two.
+        reference, _ = render(scene, 8 * SPP, 999)
+        runs = [render(scene, SPP, seed) for seed in range(3)]
+        error = float(np.median([rel_mse(image, reference) for image, _ in runs]))
+        seconds = float(np.median([seconds for _, seconds in runs]))
+        # Error falls as 1 / spp or faster, so the time to a given error is in proportion to the product.
+        result[str(count)] = {"rel_mse": error, "seconds": seconds, "seconds_times_error": error * seconds}
+        print(f"{count} emitters: relMSE {error:.3g} in {seconds:.2f} s at {SPP} spp")
+    ratio = result["1000"]["seconds_times_error"] / result["10"]["seconds_times_error"]
+    met = ratio <= MOST_FOR_A_THOUSAND
+    print(
+        f"time to equal error, a thousand emitters over ten: {ratio:.2f}, "
+        f"goal at most {MOST_FOR_A_THOUSAND:g}: {'met' if met else 'missed'}"
+    )
+    return {**result, "time_to_equal_error_ratio": ratio, "met": met}

@@ -7,6 +7,8 @@ from scene_head import scene_head
 
 SIDE = 708  # quads along each side: 2 x 708^2 = 1,002,528 triangles
 
+INTEGRATOR = """<default name="max_depth" value="-1"/>
+  <integrator type="path"><integer name="max_depth" value="$max_depth"/></integrator>"""
 HILLS = """  <emitter type="constant"><rgb name="radiance" value="0.4, 0.5, 0.7"/></emitter>
   <shape type="sphere">
     <point name="center" x="2" y="3" z="1"/>
@@ -50,5 +52,5 @@ def write(folder: Path) -> Path:
     )
     (folder / "hills.ply").write_bytes(header.encode() + vertices.tobytes() + faces.tobytes())
     scene = folder / "scene.xml"
-    scene.write_text(scene_head('<integrator type="path"/>', 40, "0, 2.2, 4.2", "0, 0.2, 0") + HILLS)
+    scene.write_text(scene_head(INTEGRATOR, 40, "0, 2.2, 4.2", "0, 0.2, 0") + HILLS)
     return scene

@@ -1,4 +1,7 @@
-"""Mitsuba 3's path tracer on a scene, run by bench.py in another Python: mitsuba_peer.py SCENE SIDE SPP OUT."""
+"""Mitsuba 3's path tracer on a scene with each of its samplers, run by peers.py in a Python that has it.
+
+mitsuba_peer.py SCENE SIDE DEPTH SPP,SPP,... OUT.npz
+"""
 
 import re
 import sys
@@ -9,32 +12,29 @@ import drjit as dr
 import mitsuba as mi
 import numpy as np
 
-SEEDS = 3
+THREADS = 2
+SAMPLERS = ("independent", "stratified", "multijitter", "orthogonal", "ldsampler")
 
 
 def main() -> None:
-    scene_file, side, spp, out = Path(sys.argv[1]), int(sys.argv[2]), int(sys.argv[3]), sys.argv[4]
+    scene_file, side, depth, counts, out = Path(sys.argv[1]), *sys.argv[2:]
     mi.set_variant("llvm_ad_rgb")
-    dr.set_thread_count(2)
-    folder = f"{scene_file.parent.resolve()}/"
-    xml = re.sub(r'(name="filename" value=")', rf"\g<1>{folder}", scene_file.read_text())
-    xml = xml.replace("</film>", '<boolean name="sample_border" value="true"/></film>')
+    dr.set_thread_count(THREADS)
+    xml = re.sub(r'(name="filename" value=")', rf"\g<1>{scene_file.parent.resolve()}/", scene_file.read_text())
     xml = re.sub(r'(name="(?:width|height)" value=")[^"]*', rf"\g<1>{side}", xml)
-    results = {}
-    for sampler in ("independent", "multijitter"):
-        chosen = f'<sampler type="{sampler}"'
-        text = xml.replace('<sampler type="independent"', chosen)
-        if "<sampler" not in text:
-            text = text.replace("</film>", f"</film>{chosen}/>")
-        scene = mi.load_string(text)
-        np.array(mi.render(scene, spp=spp, seed=99))  # compiles the kernels
-        images, seconds = [], []
-        for seed in range(SEEDS):
+    images, seconds = [], []
+    for sampler in SAMPLERS:
+        scene = mi.load_string(xml.replace("</film>", f'</film><sampler type="{sampler}"/>'), max_depth=depth)
+        for seed, spp in enumerate(map(int, counts.split(","))):
+            np.array(mi.render(scene, spp=spp, seed=99))  # compiles the kernels
             start = time.perf_counter()
-            images.append(np.array(mi.render(scene, spp=spp, seed=seed))[..., :3].astype(np.float64))
+            images.append(np.array(mi.render(scene, spp=spp, seed=seed))[..., :3])
             seconds.append(time.perf_counter() - start)
-        results[f"{sampler}_images"], results[f"{sampler}_seconds"] = np.stack(images), np.array(seconds)
-    np.savez(out, **results)
+    shape = (len(SAMPLERS), len(counts.split(",")))
+    names = [f"Mitsuba, {sampler}" for sampler in SAMPLERS]
+    np.savez(
+        out, names=names, images=np.stack(images).reshape(*shape, *images[0].shape), seconds=np.reshape(seconds, shape)
+    )
 
 
 if __name__ == "__main__":

@@ -46,9 +46,9 @@ def render_alone(scene: Path, out: Path, *options: object) -> Layers:
     return read_exr(out)
 
 
-def outside_scene(name: str) -> Path:
+def outside_scene(name: str, file: str = "scene.xml") -> Path:
     """A scene of the shared collection; skips the test where that is absent."""
-    scene = SCENES_DATA / name / "scene.xml"
+    scene = SCENES_DATA / name / file
     if not scene.exists():
         pytest.skip(f"no outside scenes here: {scene} does not exist (set FLUXFARM_SCENES_DATA)")
     return scene

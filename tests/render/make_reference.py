@@ -5,8 +5,13 @@ Needs a Python with mitsuba and numpy (a peer for references only, no dependency
     PEER_PYTHON tests/render/make_reference.py cornell-box --size 256x256 --spp 256 --runs 24
     PEER_PYTHON tests/render/make_reference.py veach-mis --size 256x144 --spp 512 --runs 32
     PEER_PYTHON tests/render/make_reference.py veach-bidir --size 256x256 --spp 1024 --runs 40
+    PEER_PYTHON tests/render/make_reference.py veach-ajar --size 128x80 --spp 64 --runs 32
+    PEER_PYTHON tests/render/make_reference.py glass-of-milk --size 96x64 --spp 64 --runs 32
+    PEER_PYTHON tests/render/make_reference.py gltf-cornell-glass --size 128x128 --spp 64 --runs 20
 
 Equal depth: the scenes' own max_depth. The film samples beyond its border (sample_border), as pixel filters do here.
+What is changed in a scene for both renderers: outside_variants.py. For glTF, Mitsuba renders
+references/gltf-cornell-glass.xml, the same scene written again by hand.
 
 Mitsuba's sphere lights take 1 - cos(theta) of the cone that the sphere fills as a difference of float32 numbers. For
 the smallest lamp of veach-mis that is wrong by up to 0.2 %, in steps, with the distance (a plane lit by it alone:
@@ -15,11 +20,14 @@ the smallest lamp of veach-mis that is wrong by up to 0.2 %, in steps, with the 
 
 import argparse
 import json
+import os
 import re
 import tempfile
 from pathlib import Path
 
 import numpy as np
+import outside_variants
+from sphere_meshes import icosphere, latitude_longitude_sphere
 
 BLOCK = 16
 
@@ -46,34 +54,6 @@ def summary(images: np.ndarray) -> dict[str, list]:
     return {name: [[[float(f"{v:.6g}") for v in c] for c in row] for row in table] for name, table in tables.items()}
 
 
-def icosphere(subdivisions: int) -> tuple[np.ndarray, np.ndarray]:
-    """Vertices (n, 3) and faces (m, 3) of a subdivided icosahedron with the area of the unit sphere."""
-    golden = (1 + 5**0.5) / 2
-    pairs = [(a, b * golden) for a in (-1, 1) for b in (-1, 1)]
-    vertices = np.array([np.roll((0, a, b), shift) for shift in range(3) for a, b in pairs])
-    distances = np.linalg.norm(vertices[:, None] - vertices[None], axis=2)
-    near = np.isclose(distances, 2)
-    corners = [
-        (i, j, k) for i in range(12) for j in range(i) for k in range(j) if near[i, j] and near[j, k] and near[i, k]
-    ]
-    triangles = vertices[np.array(corners)]
-    inward = (
-        np.einsum(
-            "ti,ti->t", np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0]), triangles[:, 0]
-        )
-        < 0
-    )
-    triangles[inward] = triangles[inward][:, ::-1]
-    for _ in range(subdivisions):
-        a, b, c = triangles[:, 0], triangles[:, 1], triangles[:, 2]
-        ab, bc, ca = a + b, b + c, c + a
-        triangles = np.concatenate([np.stack(t, 1) for t in ((a, ab, ca), (ab, b, bc), (ca, bc, c), (ab, bc, ca))])
-        triangles /= np.linalg.norm(triangles, axis=2, keepdims=True)
-    cross = np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])
-    triangles *= np.sqrt(4 * np.pi / (np.linalg.norm(cross, axis=1).sum() / 2))
-    return triangles.reshape(-1, 3), np.arange(3 * len(triangles)).reshape(-1, 3)
-
-
 def small_spheres_to_meshes(xml: str, folder: Path) -> str:
     """The scene with each sphere of a radius below 0.1 as a PLY mesh in `folder`."""
     vertices, faces = icosphere(5)
@@ -98,17 +78,37 @@ def small_spheres_to_meshes(xml: str, folder: Path) -> str:
     return re.sub(sphere, to_mesh, xml)
 
 
-def render_runs(scene: Path, width: int, height: int, spp: int, runs: int) -> np.ndarray:
+def mitsuba_xml(name: str, folder: Path, width: int, height: int) -> str:
+    """The scene as Mitsuba is given it, with files made for it in `folder`."""
+    here = Path(__file__).parent
+    if name == "gltf-cornell-glass":
+        import gltf_surface  # noqa: F401  registers the plugin
+
+        scene, files = here / "references" / f"{name}.xml", folder
+        (folder / "sphere.ply").write_text(latitude_longitude_sphere(96, 48))
+    else:
+        shared = here.parents[2] / "shared" / "scenes-data"
+        scene = Path(os.environ.get("FLUXFARM_SCENES_DATA", shared)) / name / "scene.xml"
+        files = scene.parent.resolve()
+    xml = outside_variants.as_compared(name, scene.read_text())
+    xml = re.sub(r'(name="filename" value=")', rf"\g<1>{files}/", xml)
+    xml = small_spheres_to_meshes(xml, folder)
+    for side, pixels in (("width", width), ("height", height)):
+        xml = re.sub(rf'(<integer name="{side}" value=")[^"]*', rf"\g<1>{pixels}", xml)
+    return xml.replace("</film>", '<boolean name="sample_border" value="true"/></film>')
+
+
+def render_runs(name: str, width: int, height: int, spp: int, runs: int) -> np.ndarray:
     """(runs, height, width, 3) float32, each run with its own seed."""
     import mitsuba as mi
 
     mi.set_variant("llvm_ad_rgb")
-    xml = scene.read_text().replace("models/", f"{scene.parent.resolve()}/models/")
-    border = '<boolean name="sample_border" value="true"/></film>'
-    xml = xml.replace("</film>", border)
     with tempfile.TemporaryDirectory() as folder:
-        loaded = mi.load_string(small_spheres_to_meshes(xml, Path(folder)), resx=width, resy=height, spp=spp)
-    images = [np.array(mi.render(loaded, spp=spp, seed=1000 + run))[..., :3] for run in range(runs)]
+        loaded = mi.load_string(mitsuba_xml(name, Path(folder), width, height))
+    images = []
+    for run in range(runs):
+        images.append(np.array(mi.render(loaded, spp=spp, seed=1000 + run))[..., :3])
+        print(f"{name}: run {run + 1} of {runs}", flush=True)
     return np.stack(images)
 
 
@@ -119,11 +119,9 @@ def main() -> None:
     parser.add_argument("--spp", type=int, default=256, help="samples per pixel and run")
     parser.add_argument("--runs", type=int, default=24)
     options = parser.parse_args()
-    here = Path(__file__).parent
-    scene = here.parents[2] / "shared" / "scenes-data" / options.name / "scene.xml"
     width, height = map(int, options.size.split("x"))
-    images = render_runs(scene, width, height, options.spp, options.runs)
-    write_reference(here / "references" / f"{options.name}.json", images, options.spp)
+    images = render_runs(options.name, width, height, options.spp, options.runs)
+    write_reference(Path(__file__).parent / "references" / f"{options.name}.json", images, options.spp)
 
 
 def write_reference(path: Path, images: np.ndarray, spp: int) -> None:
@@ -132,7 +130,7 @@ def write_reference(path: Path, images: np.ndarray, spp: int) -> None:
 
     runs, height, width, _ = images.shape
     head = {
-        "renderer": f"Mitsuba {mi.__version__} path, llvm_ad_rgb, independent sampler",
+        "renderer": f"Mitsuba {mi.__version__}, llvm_ad_rgb, independent sampler",
         "width": width,
         "height": height,
         "block": BLOCK,

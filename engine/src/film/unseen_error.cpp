@@ -30,9 +30,10 @@ Found found_in(const Film& film, PixelRect cell) {
     for (int x = cell.x; x < cell.x + cell.width; ++x) {
       const PixelEstimate pixel = film.estimate(x, y);
       for (int c = 0; c < 3; ++c) {
-        const double value = std::max(pixel.mean[c], 0.0);
+        const double value = std::max(static_cast<double>(pixel.mean[c]), 0.0);
+        const double standard_error = static_cast<double>(pixel.standard_error[c]);
         found.radiance += value / 3;
-        found.variance += pixel.variance[c] / 3;  // at most: as if the channels rose and fell together
+        found.variance += standard_error * standard_error / 3;  // at most: as if the channels rose and fell together
         found.steepness += 0.5 / (value + std::sqrt(value * value + 1e-2)) / 3;
       }
     }

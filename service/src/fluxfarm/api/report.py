@@ -1,11 +1,11 @@
 """What a job did: its plan, its report and its chart."""
 
-import math
 from typing import Any
 
 from fastapi import APIRouter, Response
 from pydantic import BaseModel, Field
 
+from fluxfarm.api.chart import Curve, draw
 from fluxfarm.api.deps import Farm, JobId, Services
 from fluxfarm.api.problems import problem_responses
 from fluxfarm.api.schemas import RevisionOut, revision_out
@@ -15,7 +15,6 @@ from fluxfarm.domain.records import JobRecord, Revision
 from fluxfarm.errors import NotYetThere
 
 router = APIRouter(tags=["reports"])
-WIDTH, HEIGHT, MARGIN = 640, 400, 56
 
 
 class PointOut(BaseModel):
@@ -96,49 +95,13 @@ async def chart(job_id: JobId, farm: Farm) -> Response:
     points = chart_points(await farm.ledger.revisions(job_id))
     if len(points) < 2:
         raise NotYetThere(f"job {job_id}: {len(points)} revision(s) with an error, a chart needs two")
-    return Response(draw(points), media_type="image/svg+xml")
+    svg = draw([Curve(points)], "time in RUNNING, seconds", "estimated relative error (noise)")
+    return Response(svg, media_type="image/svg+xml")
 
 
 def chart_points(revisions: list[Revision]) -> list[tuple[float, float]]:
     """(seconds, error) of the revisions that have a positive error."""
     return [(r.running_s, r.error_noise) for r in revisions if r.error_noise and r.running_s > 0]
-
-
-def draw(points: list[tuple[float, float]]) -> str:
-    """An SVG of the points, with a grid line at each power of ten."""
-    x_low, x_high = _decades([x for x, _ in points])
-    y_low, y_high = _decades([y for _, y in points])
-
-    def place(x: float, y: float) -> tuple[float, float]:
-        across = (math.log10(x) - x_low) / (x_high - x_low)
-        up = (math.log10(y) - y_low) / (y_high - y_low)
-        return MARGIN + across * (WIDTH - 2 * MARGIN), HEIGHT - MARGIN - up * (HEIGHT - 2 * MARGIN)
-
-    box = f'viewBox="0 0 {WIDTH} {HEIGHT}"'
-    parts = [f'<svg xmlns="http://www.w3.org/2000/svg" {box} font-family="sans-serif" font-size="11">']
-    parts.append(f'<rect width="{WIDTH}" height="{HEIGHT}" fill="white"/>')
-    for power in range(x_low, x_high + 1):
-        x, _ = place(10.0**power, 10.0**y_low)
-        parts.append(f'<path d="M{x:.1f} {MARGIN}V{HEIGHT - MARGIN}" stroke="#ddd"/>')
-        parts.append(f'<text x="{x:.1f}" y="{HEIGHT - MARGIN + 16}" text-anchor="middle">{10.0**power:g}</text>')
-    for power in range(y_low, y_high + 1):
-        _, y = place(10.0**x_low, 10.0**power)
-        parts.append(f'<path d="M{MARGIN} {y:.1f}H{WIDTH - MARGIN}" stroke="#ddd"/>')
-        parts.append(f'<text x="{MARGIN - 6}" y="{y + 4:.1f}" text-anchor="end">{10.0**power:g}</text>')
-    line = " ".join(f"{x:.1f},{y:.1f}" for x, y in (place(*point) for point in points))
-    parts.append(f'<polyline points="{line}" fill="none" stroke="#06c" stroke-width="2"/>')
-    for point in points:
-        x, y = place(*point)
-        parts.append(f'<circle cx="{x:.1f}" cy="{y:.1f}" r="3" fill="#06c"/>')
-    parts.append(f'<text x="{WIDTH / 2}" y="{HEIGHT - 12}" text-anchor="middle">time in RUNNING, seconds</text>')
-    parts.append(f'<text x="{MARGIN}" y="{MARGIN - 16}">estimated relative error (noise)</text></svg>')
-    return "\n".join(parts)
-
-
-def _decades(values: list[float]) -> tuple[int, int]:
-    """Whole powers of ten around the values, at least one apart."""
-    low = math.floor(math.log10(min(values)))
-    return low, max(low + 1, math.ceil(math.log10(max(values))))
 
 
 async def _seconds_by_state(farm: Services, record: JobRecord) -> dict[str, float]:

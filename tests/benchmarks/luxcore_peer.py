@@ -1,0 +1,132 @@
+"""LuxCore on a flat scene, run by peers.py in a Python that has pyluxcore.
+
+    luxcore_peer.py FLAT.npz SIDE DEPTH SPP,SPP,... OUT.npz
+
+Its path tracer for the CPU with the Sobol sampler; no clamping, no denoising. Lights are triangles: its own round ones
+are never met by a ray. Its rough metal has Schlick's distribution, which is GGX's with alpha^2 as the roughness, and
+Schlick's masking, which is near Smith's.
+"""
+
+import json
+import os
+import sys
+import time
+from typing import Any
+
+import numpy as np
+import pyluxcore
+
+THREADS = 2
+POLL_S = 0.01
+
+
+def texture(name: str, values: list[float]) -> dict[str, Any]:
+    return {f"scene.textures.{name}.type": "constfloat3", f"scene.textures.{name}.value": values}
+
+
+def material(name: str, m: dict[str, Any]) -> dict[str, Any]:
+    key = f"scene.materials.{name}"
+    if m["type"] == "diffuse":
+        return {f"{key}.type": "matte", f"{key}.kd": m["reflectance"]}
+    if m["type"] == "dielectric":
+        given = {"type": "glass", "kr": [1, 1, 1], "kt": [1, 1, 1], "interiorior": m["ior"], "exteriorior": 1}
+        return {f"{key}.{what}": value for what, value in given.items()}
+    if m["type"] == "mirror":
+        return {f"{key}.type": "mirror", f"{key}.kr": m["reflectance"]}
+    fresnel = f"scene.textures.{name}_fresnel"
+    return {
+        f"{fresnel}.type": "fresnelconst",
+        f"{fresnel}.n": m["eta"],
+        f"{fresnel}.k": m["k"],
+        f"{key}.type": "metal2",
+        f"{key}.fresnel": f"{name}_fresnel",
+        f"{key}.uroughness": m["alpha"],
+        f"{key}.vroughness": m["alpha"],
+    }
+
+
+def properties(values: dict[str, Any]) -> pyluxcore.Properties:
+    props = pyluxcore.Properties()
+    for key, value in values.items():
+        props.Set(pyluxcore.Property(key, value))
+    return props
+
+
+def scene_of(flat: str, side: int) -> pyluxcore.Scene:
+    scene = pyluxcore.Scene()
+    with np.load(flat) as arrays:
+        head = json.loads(str(arrays["head"]))
+        camera = head["camera"]
+        values: dict[str, Any] = {
+            "scene.camera.type": "perspective",
+            "scene.camera.lookat.orig": camera["origin"],
+            "scene.camera.lookat.target": camera["target"],
+            "scene.camera.up": camera["up"],
+            "scene.camera.fieldofview": camera["fov"],
+            "scene.camera.autofocus.enable": False,
+            # Film rows run from the bottom in [0, side), the camera's from the top in (-1, side - 1]: a pixel's shift.
+            "scene.camera.screenwindow": [-1, 1, -1 - 2 / side, 1 - 2 / side],
+        }
+        if any(head["sky"]):
+            values |= {"scene.lights.sky.type": "constantinfinite", "scene.lights.sky.color": head["sky"]}
+        for i, shape in enumerate(head["shapes"]):
+            vertices, faces, normals = (arrays[f"{part}_{i}"] for part in ("vertices", "faces", "normals"))
+            smooth = [tuple(n) for n in normals.tolist()] or None
+            points, triangles = [tuple(v) for v in vertices.tolist()], [tuple(f) for f in faces.tolist()]
+            scene.DefineMesh(f"mesh{i}", points, triangles, smooth, None, None, None)
+            values |= material(f"material{i}", shape["material"])
+            if "radiance" in shape:
+                values[f"scene.materials.material{i}.emission"] = shape["radiance"]
+                # Else meshes of more than 256 triangles are left to chance.
+                values[f"scene.materials.material{i}.emission.directlightsampling.type"] = "ENABLED"
+            values[f"scene.objects.object{i}.shape"] = f"mesh{i}"
+            values[f"scene.objects.object{i}.material"] = f"material{i}"
+    scene.Parse(properties(values))
+    return scene
+
+
+def render(scene: pyluxcore.Scene, side: int, depth: int, spp: int, seed: int) -> tuple[np.ndarray, float]:
+    """(side, side, 3) and the seconds from the first sample to the last."""
+    values = {
+        "renderengine.type": "PATHCPU",
+        "renderengine.seed": seed + 1,
+        "sampler.type": "SOBOL",
+        "native.threads.count": THREADS,
+        "film.width": side,
+        "film.height": side,
+        "film.filter.type": "BOX",
+        "film.filter.width": 0.5,
+        "path.pathdepth.total": depth - 1,
+        "path.pathdepth.diffuse": depth - 1,
+        "path.pathdepth.glossy": depth - 1,
+        "path.pathdepth.specular": depth - 1,
+        "path.clamping.variance.maxvalue": 0,
+        "batch.haltspp": spp,
+        "film.outputs.0.type": "RGB",
+        "film.outputs.0.filename": "image.exr",
+    }
+    session = pyluxcore.RenderSession(pyluxcore.RenderConfig(properties(values), scene))
+    session.Start()
+    start = time.perf_counter()
+    while not session.HasDone():
+        time.sleep(POLL_S)
+        session.UpdateStats()
+    seconds = time.perf_counter() - start
+    pixels = np.empty((side, side, 3), np.float32)
+    session.GetFilm().GetOutputFloat(pyluxcore.FilmOutputType.RGB, pixels)
+    session.Stop()
+    return pixels[::-1].copy(), seconds
+
+
+def main() -> None:
+    flat, side, depth, counts, out = sys.argv[1:]
+    pyluxcore.Init(lambda message: None)
+    scene = scene_of(flat, int(side))
+    runs = [render(scene, int(side), int(depth), int(spp), seed) for seed, spp in enumerate(counts.split(","))]
+    images, seconds = zip(*runs, strict=True)
+    np.savez(out, names=["LuxCore"], images=np.stack(images)[None], seconds=[seconds])
+    os._exit(0)  # its own end, with many lights, is now and then a segmentation fault
+
+
+if __name__ == "__main__":
+    main()

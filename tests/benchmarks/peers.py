@@ -1,0 +1,178 @@
+"""Time to equal error against Mitsuba 3, Cycles and LuxCore: four scenes of ours, two threads, equal depth.
+
+Each renderer draws each scene with a few numbers of samples. Its relMSE against a long run of ours and its seconds of
+rendering alone (no loading, no compiling) lie about a line of error ~ 1 / time; the product of the two, in the
+geometric mean over the points, gives the time to any error and the error in any time. A renderer whose mean picture is
+another one is left out of the comparison and says so. Each is measured where its variable names a Python that has it.
+"""
+
+import os
+import re
+import shutil
+import subprocess
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+import flat_scene
+import million
+import numpy as np
+
+from fluxfarm.api.chart import Curve, draw
+
+ROOT = Path(__file__).parents[2]
+PEERS = {"PEER_PYTHON": "mitsuba", "CYCLES_PYTHON": "cycles", "LUXCORE_PYTHON": "luxcore"}
+OURS = "Fluxfarm"
+SIDE = 256
+DEPTH = 16
+COUNTS = (16, 32, 64)  # samples a pixel
+REFERENCE_SPP = 2048
+MEAN_TOLERANCE = 0.01  # of a channel's mean, besides three standard errors
+COLOURS = {"cornell": "#06c", "cornell-glass": "#c40", "plates": "#083", "million": "#808"}
+DASHES = {OURS: "none", "Mitsuba": "6 3", "Cycles": "2 3", "LuxCore": "9 3 2 3"}
+
+# Scene, spp, seed to pixels (SIDE, SIDE, 3) and seconds.
+Render = Callable[[Path, int, int], tuple[np.ndarray, float]]
+
+
+@dataclass(frozen=True)
+class Measured:
+    """What one renderer did with one scene; `seconds` and `errors` (relMSE) for each of COUNTS."""
+
+    name: str
+    seconds: list[float]
+    errors: list[float]
+    mean_ratio: list[float]  # of each channel, to the reference
+    same_picture: bool
+
+    @property
+    def cost(self) -> float:
+        """Seconds times relMSE, the same all along a line of error ~ 1 / time."""
+        return float(np.exp(np.mean(np.log(np.multiply(self.seconds, self.errors)))))
+
+
+def rel_mse(image: np.ndarray, reference: np.ndarray) -> float:
+    """Mean over pixels and channels of (I - R)^2 / (R^2 + 1e-2)."""
+    return float(np.mean((image - reference) ** 2 / (reference**2 + 1e-2)))
+
+
+def write_scenes(folder: Path) -> dict[str, Path]:
+    """The four scenes with a box filter and without a sampler, so that all renderers can be given the same."""
+    sources = {name: ROOT / "scenes" / name / "scene.xml" for name in ("cornell", "cornell-glass")}
+    sources["plates"] = Path(__file__).with_name("plates.xml")
+    sources["million"] = million.write(folder / "million")
+    scenes = {}
+    for name, source in sources.items():
+        xml = re.sub(r'<rfilter type="[a-z]+"/>', '<rfilter type="box"/>', source.read_text())
+        xml = re.sub(r"<sampler.*?</sampler>", "", xml, flags=re.S)
+        scenes[name] = folder / name / "scene.xml"
+        scenes[name].parent.mkdir(parents=True, exist_ok=True)
+        scenes[name].write_text(xml)
+        flat_scene.write(scenes[name], flat_file(scenes[name]))
+    return scenes
+
+
+def flat_file(scene: Path) -> Path:
+    return scene.with_name("flat.npz")
+
+
+def measured(name: str, images: np.ndarray, seconds: np.ndarray, reference: np.ndarray) -> Measured:
+    images = images.astype(np.float64)
+    mean = np.average(images, axis=0, weights=COUNTS)
+    ratio = mean.mean((0, 1)) / reference.mean((0, 1))
+    error = (mean - reference).std((0, 1)) / SIDE / reference.mean((0, 1))
+    same = bool(np.all(np.abs(ratio - 1) < MEAN_TOLERANCE + 3 * error))
+    return Measured(name, seconds.tolist(), [rel_mse(image, reference) for image in images], ratio.tolist(), same)
+
+
+def of_peer(python: str, script: str, scene: Path, reference: np.ndarray) -> list[Measured]:
+    given, out = scene if script == "mitsuba" else flat_file(scene), scene.with_name(f"{script}.npz")
+    program = Path(__file__).with_name(f"{script}_peer.py")
+    arguments = [str(SIDE), str(DEPTH), ",".join(map(str, COUNTS)), out]
+    done = subprocess.run([python, program, given, *arguments], capture_output=True, text=True, check=False)
+    if done.returncode != 0:
+        raise SystemExit(f"{program.name} {given} failed:\n{done.stderr[-2000:]}")
+    with np.load(out) as data:
+        rows = zip(data["names"].tolist(), data["images"], data["seconds"], strict=True)
+        return [measured(name, images, seconds, reference) for name, images, seconds in rows]
+
+
+def of_scene(scene: Path, render: Render, pythons: dict[str, str]) -> list[Measured]:
+    """Ours first."""
+    reference, _ = render(scene, REFERENCE_SPP, 999)
+    runs = [render(scene, spp, seed) for seed, spp in enumerate(COUNTS)]
+    ours = measured(OURS, np.stack([image for image, _ in runs]), np.array([s for _, s in runs]), reference)
+    peers = [row for script, python in pythons.items() for row in of_peer(python, script, scene, reference)]
+    return [ours, *peers]
+
+
+def best_peer(rows: list[Measured]) -> Measured | None:
+    return min((row for row in rows[1:] if row.same_picture), key=lambda row: row.cost, default=None)
+
+
+def table(results: dict[str, list[Measured]], left_out: list[str]) -> str:
+    """Markdown: each renderer at our error and in our time, and whether the aims are met."""
+    heads = ["scene", "renderer", "seconds", "relMSE", "mean R G B to ours", "to our relMSE, s", "relMSE in our time"]
+    lines = [
+        f"Time to equal relMSE: {SIDE} x {SIDE} pixels, depth {DEPTH}, two threads. Seconds and relMSE at {COUNTS[-1]}",
+        "samples a pixel; the other columns from the 1 / time line through all points.",
+        "",
+        f"| {' | '.join(heads)} | our time to theirs |",
+        "|---" * (len(heads) + 1) + "|",
+    ]
+    for scene, rows in results.items():
+        error, seconds = rows[0].errors[-1], rows[0].seconds[-1]
+        for row in rows:
+            ratio = f"{rows[0].cost / row.cost:.2f}" if row.same_picture else "another picture"
+            means = " ".join(f"{v:.3f}" for v in row.mean_ratio)
+            lines.append(
+                f"| {scene} | {row.name} | {row.seconds[-1]:.2f} | {row.errors[-1]:.3g} | {means} "
+                f"| {row.cost / error:.2f} | {row.cost / seconds:.3g} | {ratio} |"
+            )
+    return "\n".join([*lines, "", *left_out, *verdicts(results)]) + "\n"
+
+
+def verdicts(results: dict[str, list[Measured]]) -> list[str]:
+    lines, ratios = [], []
+    for scene, rows in results.items():
+        best = best_peer(rows)
+        if best is None:
+            lines.append(f"- {scene}: no peer to compare with")
+            continue
+        ratios.append(rows[0].cost / best.cost)
+        said = "pass" if ratios[-1] <= 1 else "miss"
+        half = "pass" if ratios[-1] <= 0.5 else "miss"
+        lines.append(f"- {scene}: {ratios[-1]:.2f} of the time of {best.name}: {said}; at most half: {half}")
+    if ratios:
+        halves = sum(ratio <= 0.5 for ratio in ratios)
+        lines.append(f"- at most the best peer's time on each scene: {'pass' if max(ratios) <= 1 else 'miss'}")
+        lines.append(f"- half of it on at least two: {'pass' if halves >= 2 else 'miss'} ({halves})")
+    return lines
+
+
+def plot(results: dict[str, list[Measured]]) -> str:
+    """An SVG: relMSE over seconds, a colour a scene, dashes a renderer; of Mitsuba's samplers the best."""
+    curves = []
+    for scene, rows in results.items():
+        shown: dict[str, Measured] = {}
+        for row in sorted(rows, key=lambda row: row.cost):
+            shown.setdefault(row.name.split(",")[0], row)
+        for name, row in shown.items():
+            points = list(zip(row.seconds, row.errors, strict=True))
+            curves.append(Curve(points, f"{scene}: {row.name}", COLOURS[scene], DASHES[name]))
+    return draw(curves, "time of rendering, seconds", "relMSE")
+
+
+def compare(folder: Path, render: Render) -> dict[str, list[Measured]]:
+    """Measure all scenes; write peers.md and peers.svg into `folder`."""
+    pythons = {script: os.environ[name] for name, script in PEERS.items() if name in os.environ}
+    missing = [(name, script) for name, script in PEERS.items() if script not in pythons]
+    left_out = [f"- left out: {script}, as {name} names no Python that has it" for name, script in missing]
+    work = folder / "peers"
+    results = {name: of_scene(scene, render, pythons) for name, scene in write_scenes(work).items()}
+    shutil.rmtree(work)
+    text = table(results, left_out)
+    (folder / "peers.md").write_text(text)
+    (folder / "peers.svg").write_text(plot(results))
+    print(text)
+    return results
