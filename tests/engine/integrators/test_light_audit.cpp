@@ -63,7 +63,7 @@ Side camera_side(const SceneDescription& description, std::uint32_t spp) {
       for (int x = cell.x; x < cell.x + cell.width; ++x) {
         const PixelEstimate pixel = result.film.estimate(x, y);
         radiance += (pixel.mean[0] + pixel.mean[1] + pixel.mean[2]) / 3;
-        variance += pixel.variance[1];
+        variance += std::pow(static_cast<double>(pixel.standard_error[1]), 2);
       }
     }
     side.radiance.push_back(radiance / cell.pixels());

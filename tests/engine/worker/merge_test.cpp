@@ -82,7 +82,7 @@ TEST_F(Merge, DecidesOnlyWhenAsked) {
   MergePassRequest plain = request({tile({0, 16})});
   PassMerger merger;
   EXPECT_FALSE(merger.merge(plain).look.has_value());
-  plain.decision = {{1e-6}, 1};
+  plain.decision = {{1e-6}, 1, {}};
   const std::optional<ErrorLook> look = merger.merge(plain).look;
   ASSERT_TRUE(look.has_value());
   ASSERT_TRUE(look->next.has_value());

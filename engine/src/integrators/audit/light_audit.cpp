@@ -47,7 +47,7 @@ class Grid {
 // Adds what particles leave, so that the squares are those of whole particles: the splats of one are not independent.
 class GroupSums {
  public:
-  explicit GroupSums(std::size_t cells) : cells(cells) {}
+  explicit GroupSums(std::size_t count) : cells(count) {}
 
   void add(const ParticleTrace& trace, const Grid& grid) {
     arrived += trace.arrived;
