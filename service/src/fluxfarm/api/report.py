@@ -74,7 +74,8 @@ async def report(job_id: JobId, farm: Farm) -> ReportOut:
         error={
             "noise": None if record.newest is None else record.newest.error_noise,
             "bias": 0.0,
-            "unseen": None if record.newest is None else record.newest.error_unseen,
+            # Only what was merged at the end of a round was looked at.
+            "unseen": next((r.error_unseen for r in reversed(revisions) if r.error_unseen is not None), None),
         },
         timeline=[PointOut(seconds=r.running_s, spp=r.mean_samples, error=r.error_noise) for r in revisions],
         revisions=[revision_out(revision) for revision in revisions],

@@ -265,9 +265,9 @@ class Orchestrator:
         self.tallies.stale_tiles += len(batch.taken) - sum(batch.taken)
         self.tallies.commit_seconds.add(batch.seconds)
         for fence in batch.ended:
-            for run in self._runs.in_order():
-                if run.has_lease(fence):
-                    run.end_lease(fence)
+            run = self._runs.of_lease(fence)
+            if run is not None:
+                run.end_lease(fence)
         for job_id in {commit.job_id for commit in batch.commits}:
             run = self._runs.get(job_id)
             if batch.fault is not None and run is not None:

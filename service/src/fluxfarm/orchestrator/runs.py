@@ -1,4 +1,4 @@
-"""The unfinished jobs in memory, and every change of their state: the ledger first, memory after it."""
+"""The unfinished jobs in memory, and how they come and go: the ledger first, memory after it."""
 
 import logging
 import time
@@ -112,6 +112,10 @@ class Runs:
     def get(self, job_id: str) -> JobRun | None:
         """The run of a job that is worked on."""
         return self._runs.get(job_id)
+
+    def of_lease(self, fence: int) -> JobRun | None:
+        """The run that a lease belongs to, while that is open."""
+        return next((run for run in self._runs.values() if run.has_lease(fence)), None)
 
     def in_order(self) -> list[JobRun]:
         """All runs, the most urgent first."""
