@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "emitters/emitter_bounds.h"
+#include "support/vector_clones.h"
 
 namespace fluxfarm {
 
@@ -47,7 +48,7 @@ class EmitterTree {
 
  private:
   static constexpr std::size_t kWidth = 16;
-  static constexpr std::size_t kVector = 4;  // lanes that are weighed at once
+  static constexpr std::size_t kVector = 8;  // lanes that are weighed at once
   static constexpr std::uint32_t kLeaf = 0x80000000u;
 
   // The children of a node, one in each lane; lanes without a child have no intensity.
@@ -72,7 +73,7 @@ class EmitterTree {
     std::array<float, kWidth> of{};  // in units of their own; zero only for what can bring nothing
     float sum;
   };
-  static Importances importances(const Block& block, const EmitterReference& reference);
+  FLUXFARM_VECTOR_CLONES static Importances importances(const Block& block, const EmitterReference& reference);
 
   std::vector<Block> blocks_;   // the root first
   std::vector<Place> parents_;  // of each block

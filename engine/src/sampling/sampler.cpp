@@ -1,12 +1,6 @@
 #include "sampling/sampler.h"
 
-// The same integers on every instruction set, only faster where there are wider vectors.
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__) && \
-    !defined(__SANITIZE_THREAD__)
-#define FLUXFARM_VECTOR_CLONES __attribute__((target_clones("arch=x86-64-v4", "avx2", "default")))
-#else
-#define FLUXFARM_VECTOR_CLONES
-#endif
+#include "support/vector_clones.h"
 
 namespace fluxfarm {
 namespace {
