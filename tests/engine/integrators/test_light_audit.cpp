@@ -192,11 +192,23 @@ SceneBuilder room(MaterialDescription block, float walls = 0.7f) {
 
 TEST(LightAudit, SeesInterreflection) { expect_same_light(wide_view(room(DiffuseDescription{Rgb{0.5f}}), 50), 24); }
 
-TEST(LightAudit, SeesGlossyAndCoatedSurfaces) {
+TEST(LightAudit, SeesGlossySurfaces) {
   RoughConductorDescription metal;
   metal.conductor.perfect = true;
   metal.roughness.alpha_u = metal.roughness.alpha_v = 0.3f;
   expect_same_light(wide_view(room(metal), 50), 24);
+}
+
+// A smooth coat on a block beside the view: the audit is blind to what a camera sees in it, and not to the light that it throws.
+TEST(LightAudit, FollowsCoatedSurfaces) {
+  PlasticDescription coated;
+  coated.diffuse_reflectance = Rgb{0.6f};
+  SceneBuilder builder;
+  builder.floor(0, 3, builder.diffuse(0.6f));
+  builder.shape(testing::cube(Transform::translate(-1.5, 0.5, 0) * Transform::scale(0.1, 0.5, 1)), builder.add(coated));
+  builder.shape(SphereDescription{{1.8f, 0.7f, 0}, 0.5f}, builder.diffuse(0), 2);
+  builder.look({-0.4, 2.2, 0.1}, {-0.5, 0, 0});
+  expect_same_light(wide_view(builder, 30), 240, 1024);
 }
 
 TEST(LightAudit, SeesThroughAThinLens) {
@@ -240,6 +252,42 @@ TEST(LightAudit, FollowsShadingNormals) {
   builder.lamp_down(-0.3f, 1.5f, 0, 0.4f, 0.4f, builder.diffuse(0), 5);
   builder.look({-0.4, 1.2, 0}, {1.2, 0.7, 0});
   expect_same_light(wide_view(builder, 35), 400, 512);
+}
+
+// A normal map on the floor, which alone lights the wall that is seen: not reciprocal, so that particles which
+// take the weights of paths light it 37 % too much.
+TEST(LightAudit, FollowsNormalMaps) {
+  const auto scene = [](bool tilted) {
+    SceneBuilder builder;
+    const int grey = builder.diffuse(0.8f);
+    const Vec3f n = normalize(Vec3f{0.7f, 0, 1});
+    const Rgb colour = tilted ? Rgb{0.5f * (n.x + 1), 0.5f * (n.y + 1), 0.5f * (n.z + 1)} : Rgb{0.5f, 0.5f, 1};
+    const int normals = builder.texture(CheckerboardDescription{colour, colour, {}});
+    builder.floor(0, 1, builder.add(NormalMapDescription{grey, normals}));
+    // A wall that only the floor lights: the lamp shines down.
+    builder.shape(
+        RectangleDescription{Transform::translate(1.2, 0.9, 0) * Transform::rotate(0, 1, 0, -90) * Transform::scale(1, 0.5, 1)},
+        grey);
+    builder.lamp_down(-0.3f, 1.5f, 0, 0.4f, 0.4f, builder.diffuse(0), 5);
+    builder.look({-0.4, 1.2, 0}, {1.2, 0.7, 0});
+    return wide_view(builder, 35);
+  };
+  expect_same_light(scene(true), 400, 512);
+  // Twin: without the map the floor throws other light on the wall.
+  EXPECT_GT(worst_z(light_side(scene(false), 24), camera_side(scene(true), 64)), 5);
+}
+
+TEST(LightAudit, FollowsRoughGlass) {
+  RoughDielectricDescription rough;
+  rough.roughness.alpha_u = rough.roughness.alpha_v = 0.3f;
+  SceneBuilder builder;
+  builder.floor(0, 3, builder.diffuse(0.6f));
+  builder.shape(
+      testing::cube(Transform::translate(-1.3, 0.5, 0) * Transform::rotate(0, 0, 1, 20) * Transform::scale(0.1, 0.45, 0.6)),
+      builder.add(rough));
+  builder.shape(SphereDescription{{-2.1f, 0.7f, 0}, 0.5f}, builder.diffuse(0), 2);
+  builder.look({0.3, 2.2, 0.1}, {0, 0, 0});
+  expect_same_light(wide_view(builder, 30), 320, 1536);
 }
 
 TEST(LightAudit, FindsTheLightOfABulbUnreachable) {
