@@ -57,6 +57,35 @@ TEST(UnseenError, BoundsTheErrorOfLightThatIsMissing) {
   EXPECT_LT(even, 0.6 * worst);
 }
 
+// Missing light that falls on the dark part of a cell costs more than the cell's mean tells.
+TEST(UnseenError, BoundsTheErrorOfLightThatIsMissingInTheDark) {
+  const double bright = 10, missing = 0.01;
+  const auto value = [&](int x) { return x % 32 < 3 ? 0.0 : bright; };  // of 32 columns
+  const double dark = 3.0 / 32;
+  const Film film = picture(value, 0);
+  const UnseenError unseen = unseen_error(film, audit_of({9, 1e-6, missing, 0}, {9, 1e-6, missing, 0}, 0.01), 1);
+  double worst = 0;
+  for (double part = 1; part > 0.01; part *= 0.9) {  // all of it in that part of the dark pixels
+    const double x = missing / (part * dark);
+    worst = std::max(worst, std::sqrt(part * dark * x * x / (x * x + 1e-2)));
+  }
+  EXPECT_GT(worst, 0.2);
+  EXPECT_LE(worst, unseen.error);
+  EXPECT_LT(unseen.error, 1.5 * worst);
+  // Twin: the product of the means, which is no bound.
+  const double steepness = dark * 0.5 / 0.1 + (1 - dark) * 0.5 / (bright + std::sqrt(bright * bright + 1e-2));
+  EXPECT_LT(std::sqrt(missing * steepness), 0.5 * worst);
+}
+
+// However much is missing, no pixel's share is above 1: half of the picture dark and lost, half bright and whole.
+TEST(UnseenError, NeverTakesMoreThanThePixelsThere) {
+  const Film film = picture([](int x) { return x % 2 == 0 ? 0.0 : 1e4; }, 0);
+  const UnseenError unseen = unseen_error(film, audit_of({5e3, 1e-6, 0.2, 0}, {5e3, 1e-6, 0.2, 0}, 0.01), 1);
+  EXPECT_NEAR(unseen.error, std::sqrt(0.5), 1e-3);
+  const UnseenError all = unseen_error(film, audit_of({5e3, 1e-6, 1e6, 0}, {5e3, 1e-6, 1e6, 0}, 0.9), 1);
+  EXPECT_NEAR(all.error, 1, 1e-9);
+}
+
 TEST(UnseenError, DoubtsOnlyWhatIsClear) {
   const Film film = picture([](int) { return 0.5; }, 0.2);
   // The mean of 1024 pixels has a standard error of 0.2 / 32.
