@@ -92,7 +92,8 @@ UnseenError unseen_error(const Film& film, const LightAudit& audit, int number) 
 }
 
 std::string unseen_warning(const UnseenError& unseen, double goal) {
-  const bool never = 2 * unseen.unreachable_error * unseen.unreachable_error >= unseen.error * unseen.error;
+  const bool never =
+      unseen.unreachable_error >= goal || 2 * unseen.unreachable_error * unseen.unreachable_error >= unseen.error * unseen.error;
   std::ostringstream text;
   text << std::setprecision(3) << "goal not reached: light that path tracing " << (never ? "cannot find" : "finds too rarely")
        << " makes an error of up to " << unseen.error << ", expected at most " << goal << " in all; about "

@@ -137,5 +137,28 @@ TEST(UnseenError, IsTakenOffTheGoal) {
   EXPECT_LT(noise, 0.99 * both);
 }
 
+// Samples that may find some of the missing light are not taken where others that no sample finds forbid the claim.
+TEST(UnseenError, TriesNoDoubtfulCellsWhereTheClaimIsLost) {
+  const Film film = picture([](int) { return 0.5; }, 0.001);
+  const LightAudit lost = audit_of({0.5, 1e-6, 0.1, 0}, {0.8, 1e-6, 0, 0}, 0.05);
+  ASSERT_EQ(unseen_error(film, lost, 1).doubtful, (std::vector<std::uint32_t>{1}));
+  ASSERT_GT(unseen_error(film, lost, 1).unreachable_error, 0.05);
+  const ErrorLook look = look_at(film, {0.05}, 1, &lost);
+  EXPECT_FALSE(look.next.has_value());
+  EXPECT_NE(look.warning.find("cannot find"), std::string::npos) << look.warning;
+  // Twin: with the doubt alone the cell goes on.
+  const LightAudit doubt = audit_of({0.5, 1e-6, 0, 0}, {0.8, 1e-6, 0, 0});
+  EXPECT_TRUE(look_at(film, {0.05}, 1, &doubt).next.has_value());
+}
+
+TEST(UnseenError, ForeseesTheSamplesOfDoubtfulCells) {
+  const Film film = picture([](int) { return 0.5; }, 0.001);
+  const LightAudit doubt = audit_of({0.5, 1e-6, 0, 0}, {0.8, 1e-6, 0, 0});
+  const double cell = 32 * 32, taken = 2 * cell * 2;
+  EXPECT_EQ(look_at(film, {0.05, 65536}, 1, &doubt).samples, taken + cell * (4096 - 2));
+  EXPECT_EQ(look_at(film, {0.05, 64}, 1, &doubt).samples, taken + cell * (64 - 2)) << "no more than the limit";
+  EXPECT_EQ(look_at(film, {0.05, 65536}, 1).samples, taken) << "twin: without the doubt";
+}
+
 }  // namespace
 }  // namespace fluxfarm
