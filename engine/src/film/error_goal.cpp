@@ -181,7 +181,10 @@ ErrorLook look_at(const Film& film, const ErrorGoal& goal, int number, const Lig
   const bool known = std::ranges::all_of(tiles, [](const TileError& tile) { return tile.samples >= 2; });
   const double noise = known ? error_bound(tiles, number) : std::numeric_limits<double>::infinity();
   UnseenError unseen;
-  if (audit != nullptr) {
+  const LightAudit::Outcome outcome = audit != nullptr ? audit->outcome : LightAudit::kAudited;
+  if (outcome == LightAudit::kNotPossibleWithUnreachable) {
+    unseen.error = unseen.unreachable_error = 1;  // all light may be missing
+  } else if (audit != nullptr && outcome == LightAudit::kAudited) {
     unseen = unseen_error(film, *audit, number);
     look.unseen = unseen.error;
   }
@@ -196,8 +199,10 @@ ErrorLook look_at(const Film& film, const ErrorGoal& goal, int number, const Lig
     if (look.next) {
       look.samples += samples_for_doubt(tiles, unseen.doubtful, goal);
     } else {
-      look.warning = unseen_warning(unseen, goal.rel_error);
+      look.warning = look.unseen ? unseen_warning(unseen, goal.rel_error) : unclaimed_warning();
     }
+  } else if (outcome != LightAudit::kAudited) {
+    look.warning = unaudited_warning();
   }
   return look;
 }

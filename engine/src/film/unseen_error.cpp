@@ -107,4 +107,14 @@ std::string unseen_warning(const UnseenError& unseen, double goal) {
   return text.str();
 }
 
+std::string unaudited_warning() {
+  return "claimed from noise alone: scenes with media or null boundaries are not audited for light that path tracing misses";
+}
+
+std::string unclaimed_warning() {
+  return "goal not reached: light that path tracing cannot find may be missing, for point, spot and directional emitters may shine "
+         "over mirrors or through glass, and scenes with media or null boundaries are not audited for it: give these emitters a "
+         "size, as a small sphere or disk, or do without smooth surfaces";
+}
+
 }  // namespace fluxfarm

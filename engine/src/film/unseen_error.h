@@ -23,10 +23,13 @@ struct UnseenError {
   std::vector<std::uint32_t> doubtful;  // cells where more samples may find what is missing, rising
 };
 
-// At look `number` (1, 2, ...). `audit` is one of the film's crop.
+// At look `number` (1, 2, ...). `audit` is one of the film's crop, and was possible.
 UnseenError unseen_error(const Film& film, const LightAudit& audit, int number);
 
 // Why a picture misses that goal (sqrt(relMSE)), and what its owner can do. Something must be missing.
 std::string unseen_warning(const UnseenError& unseen, double goal);
+// Of a scene that cannot be audited: beside a claim, and why there is none where no path may find the light.
+std::string unaudited_warning();
+std::string unclaimed_warning();
 
 }  // namespace fluxfarm

@@ -160,5 +160,21 @@ TEST(UnseenError, ForeseesTheSamplesOfDoubtfulCells) {
   EXPECT_EQ(look_at(film, {0.05, 65536}, 1).samples, taken) << "twin: without the doubt";
 }
 
+// A scene that cannot be audited: a claim says what it rests on, and none is made where paths may never find the light.
+TEST(UnseenError, IsToldWhereItIsNotKnown) {
+  const Film film = picture([](int) { return 0.5; }, 0.001);
+  const LightAudit blind{{}, 0, LightAudit::kNotPossible}, lost{{}, 0, LightAudit::kNotPossibleWithUnreachable};
+  const ErrorLook claimed = look_at(film, {0.05}, 1, &blind);
+  EXPECT_LE(claimed.bound, 0.05);
+  EXPECT_FALSE(claimed.unseen.has_value());
+  EXPECT_NE(claimed.warning.find("noise alone"), std::string::npos) << claimed.warning;
+  EXPECT_TRUE(look_at(film, {1e-6}, 1, &blind).warning.empty()) << "not at its end yet";
+  const ErrorLook refused = look_at(film, {0.05}, 1, &lost);
+  EXPECT_GE(refused.bound, 1);
+  EXPECT_FALSE(refused.next.has_value());
+  EXPECT_FALSE(refused.unseen.has_value());
+  EXPECT_EQ(refused.warning.find("goal not reached"), 0u) << refused.warning;
+}
+
 }  // namespace
 }  // namespace fluxfarm
