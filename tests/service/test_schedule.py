@@ -76,6 +76,11 @@ def test_goal_that_light_out_of_reach_keeps_from_being_met_is_explained_by_the_e
     assert next_pass(goal, NO_LIMITS, Measured(None, 64, 2.0, 0.1, 0.08, 0.5, why)) == Stop(why)
 
 
+def test_claim_without_an_audit_says_so() -> None:
+    why = "claimed from noise alone"
+    assert next_pass(Goal(rel_error=0.1), NO_LIMITS, Measured(None, 64, 2.0, 0.1, 0.08, 0.09, why)) == Stop(why)
+
+
 def test_limit_of_time_ends_a_round_early_and_says_so() -> None:
     late = Measured(Round(3, SampleRange(64, 128), (1,)), 64, 9.8, 1.0, 0.2, None)
     step = next_pass(Goal(rel_error=0.001), Limits(seconds=10), late)

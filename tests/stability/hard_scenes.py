@@ -87,6 +87,16 @@ def bulb_in_a_mirror() -> Node:
     return bulb() | {"mirror": mirror, "open": point([0.5, 0.4, 0.3], 0.2)}
 
 
+def bulb_near_fog() -> Node:
+    """The bulb, and a little fog behind the camera."""
+    medium = {
+        "type": "homogeneous",
+        "albedo": {"type": "rgb", "value": [0.5] * 3},
+        "sigma_t": {"type": "rgb", "value": [1.0] * 3},
+    }
+    return bulb() | {"fog": sphere([0, -0.8, 0.9], 0.05, bsdf={"type": "null"}, interior=medium)}
+
+
 def keyhole() -> Node:
     """Sun through a window in the ceiling, of 30 x 30 cm, the only light of a room."""
     edge, rest = 0.15, 0.85

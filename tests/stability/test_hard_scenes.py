@@ -40,12 +40,20 @@ def relative_error(image: np.ndarray, truth: np.ndarray) -> float:
     return float(np.sqrt(((image - truth) ** 2 / (truth**2 + 1e-2)).mean()))
 
 
-def wrong_claims(scene: Node, truth: np.ndarray, goal: float, folder: Path) -> int:
+@dataclass
+class Claims:
     """Of eight seeds."""
+
+    made: int
+    wrong: int
+
+
+def claims(scene: Node, truth: np.ndarray, goal: float, folder: Path) -> Claims:
     jobs = [run(scene, folder, "--rel-error", goal, "--seed", seed) for seed in range(SEEDS)]
     errors = [relative_error(job.image, truth) for job in jobs]
     print("claimed:", [job.claimed for job in jobs], "true errors:", [f"{error:.3f}" for error in errors])
-    return sum(job.claimed and error > goal for job, error in zip(jobs, errors, strict=True))
+    wrong = sum(job.claimed and error > goal for job, error in zip(jobs, errors, strict=True))
+    return Claims(sum(job.claimed for job in jobs), wrong)
 
 
 @pytest.mark.parametrize("name", ["bulb", "bulb_beside_a_lamp", "bulb_in_a_mirror"])
@@ -65,6 +73,18 @@ def test_a_point_light_in_glass_is_reported_and_not_claimed(name: str, tmp_path:
     assert free.claimed == ("mirror" not in scene)
 
 
+def test_a_bulb_that_cannot_be_audited_is_not_claimed(tmp_path: Path) -> None:
+    job = run(hard_scenes.bulb_near_fog(), tmp_path, "--rel-error", 0.1)
+    assert not job.claimed
+    assert job.unseen is None
+    # Twin: without glass the same scene is claimed, with a word on what the claim rests on.
+    scene = hard_scenes.bulb_near_fog()
+    del scene["bulb"]
+    free = run(scene, tmp_path, "--rel-error", 0.3)
+    assert free.claimed
+    assert any("noise alone" in warning for warning in free.warnings)
+
+
 def test_truncated_paths_lose_the_light_that_they_should(tmp_path: Path) -> None:
     """Twin of the goal: a white room cut at n reflections has lost rho^(n + 1) of its light, and says nothing of it."""
     albedo, reflections = 0.99, 8
@@ -80,10 +100,13 @@ def test_truncated_paths_lose_the_light_that_they_should(tmp_path: Path) -> None
 def test_a_white_room_keeps_its_goal(tmp_path: Path) -> None:
     albedo = 0.99
     truth = np.full((hard_scenes.SIDE, hard_scenes.SIDE, 3), hard_scenes.white_sphere_radiance(albedo))
-    assert wrong_claims(hard_scenes.white_sphere(albedo), truth, 0.1, tmp_path) <= 2
+    found = claims(hard_scenes.white_sphere(albedo), truth, 0.1, tmp_path)
+    assert found.made == SEEDS, "an engine that always refuses keeps nothing"
+    assert found.wrong <= 2
 
 
-# Eight seeds at 95 %: three or more wrong claims happen once in 170 runs of a right bound.
+# Eight seeds at 95 %: three or more wrong claims happen once in 170 runs of a right bound. An engine that always
+# refuses makes none, so nearly all have to be made.
 @pytest.mark.slow
 @pytest.mark.timeout(3600)
 @pytest.mark.parametrize(
@@ -95,9 +118,9 @@ def test_a_white_room_keeps_its_goal(tmp_path: Path) -> None:
         ("hidden_bright_lamp", 0.2, 8192),
     ],
 )
-def test_hard_scenes_keep_their_goal_or_do_not_claim_it(
-    name: str, goal: float, reference_spp: int, tmp_path: Path
-) -> None:
+def test_hard_scenes_keep_their_goal(name: str, goal: float, reference_spp: int, tmp_path: Path) -> None:
     scene = getattr(hard_scenes, name)()
     truth = run(scene, tmp_path, "--spp", reference_spp, "--seed", 10_000).image
-    assert wrong_claims(scene, truth, goal, tmp_path) <= 2
+    found = claims(scene, truth, goal, tmp_path)
+    assert found.made >= SEEDS - 1
+    assert found.wrong <= 2

@@ -17,11 +17,12 @@ std::optional<EmitterSample> SpotEmitter::sample(Vec3f reference, Vec2f) const {
 }
 
 std::optional<EmissionSample> SpotEmitter::emit(Vec2f, Vec2f u_direction, Vec3f) const {
-  const float cos_max = std::cos(cutoff_angle_);
-  const Vec3f direction = Frame(axis_).to_world(square_to_uniform_cone(u_direction, cos_max));
+  const float sine = std::sin(0.5f * cutoff_angle_);
+  const float height = 2 * sine * sine;  // 1 - cos(cutoff) with all its digits: narrow cones have few in the cosine
+  const Vec3f direction = Frame(axis_).to_world(square_to_uniform_cap(u_direction, height));
   const float share = falloff(direction);
   if (!(share > 0)) return std::nullopt;
-  return EmissionSample{{position_, direction}, intensity_ * (share * kTwoPi * (1 - cos_max)), true};
+  return EmissionSample{{position_, direction}, intensity_ * (share * kTwoPi * height), true};
 }
 
 float SpotEmitter::falloff(Vec3f direction) const {

@@ -1,6 +1,13 @@
 #include "emitters/triangle_emitter.h"
 
+#include "support/check.h"
+
 namespace fluxfarm {
+
+std::optional<EmissionSample> TriangleEmitter::emit(Vec2f, Vec2f, Vec3f) const {
+  FLUXFARM_CHECK(false, "light is followed from a mesh as a whole, never from one triangle of it");
+  return std::nullopt;
+}
 
 std::optional<EmitterBounds> TriangleEmitter::bounds() const {
   const auto [a, b, c] = mesh_->corners(triangle_);

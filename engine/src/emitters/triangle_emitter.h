@@ -15,9 +15,8 @@ class TriangleEmitter final : public Emitter {
   std::optional<EmitterSample> sample(Vec3f reference, Vec2f u) const override {
     return emitted_from(mesh_->sample_triangle(triangle_, reference, u), radiance_, both_sides_);
   }
-  std::optional<EmissionSample> emit(Vec2f u_point, Vec2f u_direction, Vec3f) const override {
-    return emitted_by(mesh_->sample_triangle_area(triangle_, u_point), power(), both_sides_, u_direction);
-  }
+  // Never called: particles leave the mesh as a whole.
+  std::optional<EmissionSample> emit(Vec2f, Vec2f, Vec3f) const override;
   Rgb power() const override { return radiance_ * ((both_sides_ ? kTwoPi : kPi) * mesh_->triangle_area(triangle_)); }
   std::optional<EmitterBounds> bounds() const override;
 

@@ -139,15 +139,28 @@ ErrorGoal goal_for_noise(ErrorGoal goal, double unreachable) {
   return goal;
 }
 
+ErrorGoal goal_for_doubt(ErrorGoal goal) {
+  goal.most_samples = std::min(goal.most_samples, kMostForDoubt);
+  return goal;
+}
+
 // What follows because the audit doubts tiles of a picture whose noise is low enough.
-std::optional<Round> choose_doubtful(std::vector<TileError> tiles, const std::vector<std::uint32_t>& doubtful, ErrorGoal goal) {
+std::optional<Round> choose_doubtful(std::vector<TileError> tiles, const std::vector<std::uint32_t>& doubtful,
+                                     const ErrorGoal& goal) {
   for (TileError& tile : tiles) {
     tile.cells.scale(0);
     tile.pooled = 0;
   }
   for (const std::uint32_t index : doubtful) tiles[index].pooled = 1;
-  goal.most_samples = std::min(goal.most_samples, kMostForDoubt);
-  return choose_round(tiles, goal);
+  return choose_round(tiles, goal_for_doubt(goal));
+}
+
+// Camera samples that doubtful tiles still take, at most: nobody knows after which the paths find what is missing.
+double samples_for_doubt(const std::vector<TileError>& tiles, const std::vector<std::uint32_t>& doubtful, const ErrorGoal& goal) {
+  const std::uint32_t most = goal_for_doubt(goal).most_samples;
+  double samples = 0;
+  for (const std::uint32_t index : doubtful) samples += tiles[index].pixels() * (most - std::min(most, tiles[index].samples));
+  return samples;
 }
 
 }  // namespace
@@ -168,21 +181,29 @@ ErrorLook look_at(const Film& film, const ErrorGoal& goal, int number, const Lig
   const bool known = std::ranges::all_of(tiles, [](const TileError& tile) { return tile.samples >= 2; });
   const double noise = known ? error_bound(tiles, number) : std::numeric_limits<double>::infinity();
   UnseenError unseen;
-  if (audit != nullptr) {
+  const LightAudit::Outcome outcome = audit != nullptr ? audit->outcome : LightAudit::kAudited;
+  if (outcome == LightAudit::kNotPossibleWithUnreachable) {
+    unseen.error = unseen.unreachable_error = 1;  // all light may be missing
+  } else if (audit != nullptr && outcome == LightAudit::kAudited) {
     unseen = unseen_error(film, *audit, number);
     look.unseen = unseen.error;
   }
   look.bound = std::hypot(noise, unseen.error);
   const ErrorGoal for_noise = goal_for_noise(goal, unseen.unreachable_error);
+  look.samples = predict_samples(tiles, for_noise, number);
   if (noise > for_noise.rel_error) {
     look.next = choose_round(tiles, for_noise);
   } else if (look.bound > goal.rel_error) {
-    look.next = choose_doubtful(tiles, unseen.doubtful, goal);
+    // Where no sample can save the claim, none is spent on what samples may find.
+    if (unseen.unreachable_error < goal.rel_error) look.next = choose_doubtful(tiles, unseen.doubtful, goal);
+    if (look.next) {
+      look.samples += samples_for_doubt(tiles, unseen.doubtful, goal);
+    } else {
+      look.warning = look.unseen ? unseen_warning(unseen, goal.rel_error) : unclaimed_warning();
+    }
+  } else if (outcome != LightAudit::kAudited) {
+    look.warning = unaudited_warning();
   }
-  if (!look.next && look.bound > goal.rel_error && noise <= for_noise.rel_error) {
-    look.warning = unseen_warning(unseen, goal.rel_error);
-  }
-  look.samples = predict_samples(tiles, for_noise, number);
   return look;
 }
 

@@ -45,13 +45,14 @@ struct ErrorLook {
   // Of sqrt(relMSE), by noise with 95 % confidence over all looks and by light that an audit missed; infinite below two samples.
   double bound = 0;
   std::optional<Round> next;     // nothing: done, or no tile may take more samples
-  double samples = 0;            // camera samples of the whole picture when it will be done, as far as can be told from the noise
+  double samples = 0;            // camera samples of the whole picture when it will be done, as far as can be told
   std::optional<double> unseen;  // of the bound the part by missing light; empty: not audited
-  std::string warning;           // why the picture ends without the claim, if missing light is the reason
+  // At the end: why there is no claim, if missing light is the reason, or that the claim rests on noise alone; else "".
+  std::string warning;
 };
 
 // The decision after round `number` (1, 2, ...).
-// Without an `audit` light that was never sampled goes unnoticed.
+// Without an `audit` light that was never sampled goes unnoticed, and no warning says so.
 ErrorLook look_at(const Film& film, const ErrorGoal& goal, int number, const LightAudit* audit = nullptr);
 
 }  // namespace fluxfarm

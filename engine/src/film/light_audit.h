@@ -22,6 +22,9 @@ struct LightAudit {
   std::vector<Cell> cells;  // of make_tiles(crop, kErrorTile), in that order
   // Share of the light arriving at surfaces with a continuous lobe, anywhere in the scene, that no path from the camera can find.
   double unreachable_share = 0;
+  // A scene that cannot be audited has no cells. All that is known is whether it has what makes light that no path finds: point,
+  // spot or directional emitters together with smooth surfaces.
+  enum Outcome { kAudited, kNotPossible, kNotPossibleWithUnreachable } outcome = kAudited;
 };
 
 }  // namespace fluxfarm

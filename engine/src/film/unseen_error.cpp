@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <iomanip>
 #include <sstream>
 
@@ -14,32 +15,50 @@ namespace {
 
 // Probability that chance makes any cell of a picture look as if light was missing, over all looks: k-th look, 2^-k of it.
 constexpr double kFalseAlarm = 0.01;
-// So much more than the paths found is no difference: the edges of cells are not exactly those of the pixel filter, and some
-// materials are not exactly reciprocal.
+// So much more than the paths found is no difference: the edges of cells are not exactly those of the pixel filter, and smooth
+// surfaces under a normal map are followed only nearly as paths are.
 constexpr double kTolerance = 0.05;
 
 // What the paths found in a cell.
 struct Found {
   double radiance = 0, variance = 0;  // of the mean over pixels, R, G, B
-  double steepness = 0;               // share of relMSE that missing light makes, at most, per radiance
+  std::vector<double> steepness;      // of each pixel: share of relMSE that missing light makes, at most, per radiance; falling
 };
 
 Found found_in(const Film& film, PixelRect cell) {
   Found found;
+  found.steepness.reserve(static_cast<std::size_t>(cell.pixels()));
   for (int y = cell.y; y < cell.y + cell.height; ++y) {
     for (int x = cell.x; x < cell.x + cell.width; ++x) {
       const PixelEstimate pixel = film.estimate(x, y);
+      double& steepness = found.steepness.emplace_back(0);
       for (int c = 0; c < 3; ++c) {
         const double value = std::max(static_cast<double>(pixel.mean[c]), 0.0);
         const double standard_error = static_cast<double>(pixel.standard_error[c]);
         found.radiance += value / 3;
         found.variance += standard_error * standard_error / 3;  // at most: as if the channels rose and fell together
-        found.steepness += 0.5 / (value + std::sqrt(value * value + 1e-2)) / 3;
+        steepness += 0.5 / (value + std::sqrt(value * value + 1e-2)) / 3;
       }
     }
   }
   const double pixels = cell.pixels();
-  return {found.radiance / pixels, found.variance / (pixels * pixels), found.steepness / pixels};
+  found.radiance /= pixels;
+  found.variance /= pixels * pixels;
+  std::ranges::sort(found.steepness, std::greater<>());
+  return found;
+}
+
+// Largest mean share of relMSE that missing light of that mean can make in a cell, however it lies there.
+double worst_share(const Found& found, double missing) {
+  const double pixels = static_cast<double>(found.steepness.size());
+  double left = missing * pixels, lost = 0;
+  for (const double steepness : found.steepness) {
+    const double here = std::min(left, 1 / steepness);
+    lost += here * steepness;
+    left -= here;
+    if (!(left > 0)) break;
+  }
+  return lost / pixels;
 }
 
 }  // namespace
@@ -60,9 +79,9 @@ UnseenError unseen_error(const Film& film, const LightAudit& audit, int number) 
     const bool doubtful = excess > z * std::sqrt(audited.variance + found.variance);
     if (doubtful) unseen.doubtful.push_back(i);
     const double missing = audited.unreachable + (doubtful ? audited.radiance - found.radiance : 0.0);
-    const double lost = audited.unreachable * found.steepness + audited.blind * blind_loss;
-    unreachable_error += pixels * std::min(1.0, lost);
-    error += pixels * std::min(1.0, lost + (missing - audited.unreachable) * found.steepness);
+    const double blind = audited.blind * blind_loss;
+    unreachable_error += pixels * std::min(1.0, worst_share(found, audited.unreachable) + blind);
+    error += pixels * std::min(1.0, worst_share(found, missing) + blind);
     missing_light += pixels * missing;
     light += pixels * (found.radiance + missing);
   }
@@ -73,7 +92,8 @@ UnseenError unseen_error(const Film& film, const LightAudit& audit, int number) 
 }
 
 std::string unseen_warning(const UnseenError& unseen, double goal) {
-  const bool never = 2 * unseen.unreachable_error * unseen.unreachable_error >= unseen.error * unseen.error;
+  const bool never =
+      unseen.unreachable_error >= goal || 2 * unseen.unreachable_error * unseen.unreachable_error >= unseen.error * unseen.error;
   std::ostringstream text;
   text << std::setprecision(3) << "goal not reached: light that path tracing " << (never ? "cannot find" : "finds too rarely")
        << " makes an error of up to " << unseen.error << ", expected at most " << goal << " in all; about "
@@ -85,6 +105,16 @@ std::string unseen_warning(const UnseenError& unseen, double goal) {
                : "; it arrives over paths that are hardly ever sampled: enlarge the emitters or openings that it comes through, or "
                  "judge a long picture with a goal of samples yourself");
   return text.str();
+}
+
+std::string unaudited_warning() {
+  return "claimed from noise alone: scenes with media or null boundaries are not audited for light that path tracing misses";
+}
+
+std::string unclaimed_warning() {
+  return "goal not reached: light that path tracing cannot find may be missing, for point, spot and directional emitters may shine "
+         "over mirrors or through glass, and scenes with media or null boundaries are not audited for it: give these emitters a "
+         "size, as a small sphere or disk, or do without smooth surfaces";
 }
 
 }  // namespace fluxfarm

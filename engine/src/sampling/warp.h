@@ -45,14 +45,17 @@ inline Vec3f square_to_cosine_hemisphere(Vec2f u) {
 // Per steradian.
 inline float square_to_cosine_hemisphere_pdf(Vec3f w) { return w.z > 0 ? w.z * kInvPi : 0.0f; }
 
-// Cap of the sphere around +z down to z = cos_max, by Lambert's equal-area projection of the disk.
-inline Vec3f square_to_uniform_cone(Vec2f u, float cos_max) {
+// Cap of the sphere around +z down to z = 1 - height, by Lambert's equal-area projection of the disk. Takes the height where it is
+// so small that its cosine has lost it.
+inline Vec3f square_to_uniform_cap(Vec2f u, float height) {
   const Vec2f p = square_to_uniform_disk(u);
-  const float height = 1 - cos_max;
   const float depth = std::min(p.x * p.x + p.y * p.y, 1.0f) * height;  // 1 - z
   const float scale = safe_sqrt(height * (2 - depth));                 // sin(theta) over the radius in the disk
   return {p.x * scale, p.y * scale, 1 - depth};
 }
+
+// Down to z = cos_max.
+inline Vec3f square_to_uniform_cone(Vec2f u, float cos_max) { return square_to_uniform_cap(u, 1 - cos_max); }
 // Per steradian; cos_max < 1.
 inline float square_to_uniform_cone_pdf(Vec3f w, float cos_max) { return w.z >= cos_max ? 1 / (kTwoPi * (1 - cos_max)) : 0.0f; }
 

@@ -47,7 +47,7 @@ FrameResult render_frame(const Scene& scene, const Integrator& integrator, const
   std::vector<RayQueries> queries(static_cast<std::size_t>(settings.threads), RayQueries(scene.accelerator()));
   const Clock::time_point start = Clock::now();
   std::optional<LightAudit> audit;
-  if (goal.rel_error) audit = audit_light(scene, settings.crop, settings.seed, settings.threads);
+  if (goal.rel_error) audit = audit_light(scene, settings.crop, settings.seed, settings.threads, cancelled);
   std::optional<Round> round = begin(settings, tiles.size());
   for (int number = 1; round; ++number) {
     std::optional<ErrorLook> look;

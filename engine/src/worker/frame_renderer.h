@@ -30,7 +30,7 @@ struct FrameSettings {
 
 // State after a pass.
 struct TimelinePoint {
-  double seconds = 0;                  // since the first pass began
+  double seconds = 0;                  // since the first pass began, or the audit before it
   double spp = 0;                      // mean over the pixels
   std::optional<double> error;         // FilmSummary::error_noise
   std::optional<double> error_bound;   // ErrorLook::bound, after a round towards an error goal
@@ -42,7 +42,7 @@ struct FrameResult {
   FilmSummary summary;
   std::vector<TimelinePoint> timeline;
   std::uint64_t rays = 0;
-  double seconds = 0;
+  double seconds = 0;                  // from the same moment on
   std::optional<double> error_unseen;  // ErrorLook::unseen of the last look
   std::vector<std::string> warnings;
 };

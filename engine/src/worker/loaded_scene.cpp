@@ -32,9 +32,12 @@ std::shared_ptr<const LoadedScene> load_scene(const LoadSceneRequest& request, i
   return loaded;
 }
 
-std::optional<LightAudit> AuditMemory::find(const Scene& scene, PixelRect crop, std::uint64_t seed, int threads) {
+LightAudit AuditMemory::find(const Scene& scene, PixelRect crop, std::uint64_t seed, int threads,
+                             const std::atomic<bool>& cancelled) {
   const std::lock_guard lock(mutex_);
-  if (!made_ || made_->crop != crop || made_->seed != seed) made_ = Made{crop, seed, audit_light(scene, crop, seed, threads)};
+  if (!made_ || made_->crop != crop || made_->seed != seed) {
+    made_ = Made{crop, seed, audit_light(scene, crop, seed, threads, cancelled)};
+  }
   return made_->audit;
 }
 

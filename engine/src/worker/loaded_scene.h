@@ -1,10 +1,12 @@
 // A scene ready to render, with its method, and the small store of them that a worker keeps between requests.
 #pragma once
 
+#include <atomic>
 #include <future>
 #include <list>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 
 #include "film/light_audit.h"
@@ -16,14 +18,14 @@ namespace fluxfarm {
 // Keeps the audit that was made last: all rounds of a job ask for the same one.
 class AuditMemory {
  public:
-  // As audit_light(). Safe to call from many threads; they wait for each other.
-  std::optional<LightAudit> find(const Scene& scene, PixelRect crop, std::uint64_t seed, int threads);
+  // As audit_light(); one that was cancelled is not kept. Safe to call from many threads; they wait for each other.
+  LightAudit find(const Scene& scene, PixelRect crop, std::uint64_t seed, int threads, const std::atomic<bool>& cancelled);
 
  private:
   struct Made {
     PixelRect crop;
     std::uint64_t seed;
-    std::optional<LightAudit> audit;
+    LightAudit audit;
   };
   std::mutex mutex_;
   std::optional<Made> made_;

@@ -109,7 +109,7 @@ class Worker {
       scene = loading->get_future().share();
       scenes_.keep(request.key, scene);
     }
-    start(id, [this, scene, loading, key = request.key]() -> ReplyBody {
+    start(id, [this, scene, loading, key = request.key](const std::atomic<bool>&) -> ReplyBody {
       if (loading) (*loading)();
       try {
         return scene.get()->info;
@@ -125,29 +125,29 @@ class Worker {
       scene = scenes_.find(request.decision->key);
       if (!scene.valid()) return reply_not_loaded(id, request.decision->key);
     }
-    start(id, [this, scene, request = std::move(request)]() -> ReplyBody {
+    start(id, [this, scene, request = std::move(request)](const std::atomic<bool>& cancelled) -> ReplyBody {
       if (!scene.valid()) return merger_.merge(request);
       const LoadedScene& loaded = *scene.get();
-      const std::optional<LightAudit> audit = loaded.audits->find(loaded.scene, request.crop, request.info.seed, threads_);
-      return merger_.merge(request, audit ? &*audit : nullptr);
+      const LightAudit audit = loaded.audits->find(loaded.scene, request.crop, request.info.seed, threads_, cancelled);
+      return merger_.merge(request, &audit);
     });
   }
   void handle(std::uint64_t id, WriteTileRequest request) {
-    start(id, [request = std::move(request)]() -> ReplyBody {
+    start(id, [request = std::move(request)](const std::atomic<bool>&) -> ReplyBody {
       write_tile(request);
       return TileWrittenReply{};
     });
   }
 
-  // One job that answers with one reply.
-  void start(std::uint64_t id, std::function<ReplyBody()> work) {
+  // One job that answers with one reply. `work` hears whether it is cancelled.
+  void start(std::uint64_t id, std::function<ReplyBody(const std::atomic<bool>&)> work) {
     const std::shared_ptr<Running> running = begin(id);
     jobs_.push(
         [this, id, running, work = std::move(work)] {
           ReplyBody body;
           try {
             if (running->cancelled) throw CancelledError();
-            body = work();
+            body = work(running->cancelled);
           } catch (...) {
             body = failure_of(std::current_exception());
           }

@@ -54,6 +54,28 @@ TEST(SpotEmitter, PowerIsTheIntegralOfItsIntensity) {
   }
 }
 
+// A cone so narrow that the float cosine of its cut-off has a digit or two left.
+TEST(SpotEmitter, EmitsItsPowerInANarrowBeam) {
+  for (const float cutoff : {0.03f, 0.1f, 30.0f}) {
+    const SpotEmitter light = spot(cutoff, cutoff);
+    const double angle = static_cast<double>(cutoff * kRadians), power = 2 * M_PI * 2 * 2 * std::pow(std::sin(angle / 2), 2);
+    double flux = 0, widest = 0;
+    constexpr int kSteps = 100;
+    for (int i = 0; i < kSteps * kSteps; ++i) {
+      const Vec2f u{(static_cast<float>(i % kSteps) + 0.5f) / kSteps, (static_cast<float>(i / kSteps) + 0.5f) / kSteps};
+      const auto emission = light.emit({}, u, {});
+      if (!emission) continue;
+      flux += static_cast<double>(emission->flux.g) / (kSteps * kSteps);
+      widest = std::max(widest, static_cast<double>(std::hypot(emission->ray.direction.x, emission->ray.direction.y)));
+    }
+    EXPECT_NEAR(flux, power, 1e-4 * power) << cutoff;
+    EXPECT_NEAR(widest, std::sin(angle), 0.02 * std::sin(angle)) << cutoff;
+  }
+  // Twin: one less the cosine, in floats.
+  const float lost = 1 - std::cos(0.03f * kRadians);
+  EXPECT_GT(std::abs(static_cast<double>(lost) / (2 * std::pow(std::sin(0.015 * M_PI / 180), 2)) - 1), 0.01);
+}
+
 TEST(DirectionalEmitter, BringsTheSameLightEverywhere) {
   const DirectionalEmitter light({0, -1, 0}, Rgb{3.0f}, 2);
   for (const Vec3f reference : {Vec3f{0, 0, 0}, Vec3f{1e6f, 5, -2}}) {

@@ -57,6 +57,35 @@ TEST(UnseenError, BoundsTheErrorOfLightThatIsMissing) {
   EXPECT_LT(even, 0.6 * worst);
 }
 
+// Missing light that falls on the dark part of a cell costs more than the cell's mean tells.
+TEST(UnseenError, BoundsTheErrorOfLightThatIsMissingInTheDark) {
+  const double bright = 10, missing = 0.01;
+  const auto value = [&](int x) { return x % 32 < 3 ? 0.0 : bright; };  // of 32 columns
+  const double dark = 3.0 / 32;
+  const Film film = picture(value, 0);
+  const UnseenError unseen = unseen_error(film, audit_of({9, 1e-6, missing, 0}, {9, 1e-6, missing, 0}, 0.01), 1);
+  double worst = 0;
+  for (double part = 1; part > 0.01; part *= 0.9) {  // all of it in that part of the dark pixels
+    const double x = missing / (part * dark);
+    worst = std::max(worst, std::sqrt(part * dark * x * x / (x * x + 1e-2)));
+  }
+  EXPECT_GT(worst, 0.2);
+  EXPECT_LE(worst, unseen.error);
+  EXPECT_LT(unseen.error, 1.5 * worst);
+  // Twin: the product of the means, which is no bound.
+  const double steepness = dark * 0.5 / 0.1 + (1 - dark) * 0.5 / (bright + std::sqrt(bright * bright + 1e-2));
+  EXPECT_LT(std::sqrt(missing * steepness), 0.5 * worst);
+}
+
+// However much is missing, no pixel's share is above 1: half of the picture dark and lost, half bright and whole.
+TEST(UnseenError, NeverTakesMoreThanThePixelsThere) {
+  const Film film = picture([](int x) { return x % 2 == 0 ? 0.0 : 1e4; }, 0);
+  const UnseenError unseen = unseen_error(film, audit_of({5e3, 1e-6, 0.2, 0}, {5e3, 1e-6, 0.2, 0}, 0.01), 1);
+  EXPECT_NEAR(unseen.error, std::sqrt(0.5), 1e-3);
+  const UnseenError all = unseen_error(film, audit_of({5e3, 1e-6, 1e6, 0}, {5e3, 1e-6, 1e6, 0}, 0.9), 1);
+  EXPECT_NEAR(all.error, 1, 1e-9);
+}
+
 TEST(UnseenError, DoubtsOnlyWhatIsClear) {
   const Film film = picture([](int) { return 0.5; }, 0.2);
   // The mean of 1024 pixels has a standard error of 0.2 / 32.
@@ -106,6 +135,45 @@ TEST(UnseenError, IsTakenOffTheGoal) {
   const ErrorLook look = look_at(film, {0.99 * both}, 1, &audit);
   EXPECT_TRUE(look.next.has_value()) << "noise alone would meet it";
   EXPECT_LT(noise, 0.99 * both);
+}
+
+// Samples that may find some of the missing light are not taken where others that no sample finds forbid the claim.
+TEST(UnseenError, TriesNoDoubtfulCellsWhereTheClaimIsLost) {
+  const Film film = picture([](int) { return 0.5; }, 0.001);
+  const LightAudit lost = audit_of({0.5, 1e-6, 0.1, 0}, {0.8, 1e-6, 0, 0}, 0.05);
+  ASSERT_EQ(unseen_error(film, lost, 1).doubtful, (std::vector<std::uint32_t>{1}));
+  ASSERT_GT(unseen_error(film, lost, 1).unreachable_error, 0.05);
+  const ErrorLook look = look_at(film, {0.05}, 1, &lost);
+  EXPECT_FALSE(look.next.has_value());
+  EXPECT_NE(look.warning.find("cannot find"), std::string::npos) << look.warning;
+  // Twin: with the doubt alone the cell goes on.
+  const LightAudit doubt = audit_of({0.5, 1e-6, 0, 0}, {0.8, 1e-6, 0, 0});
+  EXPECT_TRUE(look_at(film, {0.05}, 1, &doubt).next.has_value());
+}
+
+TEST(UnseenError, ForeseesTheSamplesOfDoubtfulCells) {
+  const Film film = picture([](int) { return 0.5; }, 0.001);
+  const LightAudit doubt = audit_of({0.5, 1e-6, 0, 0}, {0.8, 1e-6, 0, 0});
+  const double cell = 32 * 32, taken = 2 * cell * 2;
+  EXPECT_EQ(look_at(film, {0.05, 65536}, 1, &doubt).samples, taken + cell * (4096 - 2));
+  EXPECT_EQ(look_at(film, {0.05, 64}, 1, &doubt).samples, taken + cell * (64 - 2)) << "no more than the limit";
+  EXPECT_EQ(look_at(film, {0.05, 65536}, 1).samples, taken) << "twin: without the doubt";
+}
+
+// A scene that cannot be audited: a claim says what it rests on, and none is made where paths may never find the light.
+TEST(UnseenError, IsToldWhereItIsNotKnown) {
+  const Film film = picture([](int) { return 0.5; }, 0.001);
+  const LightAudit blind{{}, 0, LightAudit::kNotPossible}, lost{{}, 0, LightAudit::kNotPossibleWithUnreachable};
+  const ErrorLook claimed = look_at(film, {0.05}, 1, &blind);
+  EXPECT_LE(claimed.bound, 0.05);
+  EXPECT_FALSE(claimed.unseen.has_value());
+  EXPECT_NE(claimed.warning.find("noise alone"), std::string::npos) << claimed.warning;
+  EXPECT_TRUE(look_at(film, {1e-6}, 1, &blind).warning.empty()) << "not at its end yet";
+  const ErrorLook refused = look_at(film, {0.05}, 1, &lost);
+  EXPECT_GE(refused.bound, 1);
+  EXPECT_FALSE(refused.next.has_value());
+  EXPECT_FALSE(refused.unseen.has_value());
+  EXPECT_EQ(refused.warning.find("goal not reached"), 0u) << refused.warning;
 }
 
 }  // namespace

@@ -8,14 +8,17 @@
 #include "film/error_goal.h"
 #include "film/tile_grid.h"
 #include "integrators/audit/light_audit.h"
+#include "support/error.h"
 #include "support/scene_builder.h"
 #include "support/sky.h"
+#include "worker/loaded_scene.h"
 
 namespace fluxfarm {
 namespace {
 
 using testing::SceneBuilder;
 
+const std::atomic<bool> kNever{false};
 constexpr int kSide = 64;
 constexpr PixelRect kFrame{0, 0, kSide, kSide};
 
@@ -37,7 +40,7 @@ Side light_side(const SceneDescription& description, int audits) {
   const Scene scene(description, 1);
   Side side;
   for (int seed = 0; seed < audits; ++seed) {
-    const LightAudit audit = audit_light(scene, kFrame, static_cast<std::uint64_t>(seed), 2).value();
+    const LightAudit audit = audit_light(scene, kFrame, static_cast<std::uint64_t>(seed), 2, kNever);
     side.radiance.resize(audit.cells.size());
     side.variance.resize(audit.cells.size());
     side.unreachable.resize(audit.cells.size());
@@ -54,8 +57,7 @@ Side light_side(const SceneDescription& description, int audits) {
 Side camera_side(const SceneDescription& description, std::uint32_t spp) {
   const Scene scene(description, 1);
   const auto integrator = make_integrator("path", scene);
-  const std::atomic<bool> never{false};
-  const FrameResult result = render_frame(scene, *integrator, {kFrame, 64, 2, 1, {spp, {}, {}}}, never);
+  const FrameResult result = render_frame(scene, *integrator, {kFrame, 64, 2, 1, {spp, {}, {}}}, kNever);
   Side side;
   for (const PixelRect& cell : make_tiles(kFrame, kErrorTile)) {
     double radiance = 0, variance = 0;
@@ -192,11 +194,23 @@ SceneBuilder room(MaterialDescription block, float walls = 0.7f) {
 
 TEST(LightAudit, SeesInterreflection) { expect_same_light(wide_view(room(DiffuseDescription{Rgb{0.5f}}), 50), 24); }
 
-TEST(LightAudit, SeesGlossyAndCoatedSurfaces) {
+TEST(LightAudit, SeesGlossySurfaces) {
   RoughConductorDescription metal;
   metal.conductor.perfect = true;
   metal.roughness.alpha_u = metal.roughness.alpha_v = 0.3f;
   expect_same_light(wide_view(room(metal), 50), 24);
+}
+
+// A smooth coat on a block beside the view: the audit is blind to what a camera sees in it, and not to the light that it throws.
+TEST(LightAudit, FollowsCoatedSurfaces) {
+  PlasticDescription coated;
+  coated.diffuse_reflectance = Rgb{0.6f};
+  SceneBuilder builder;
+  builder.floor(0, 3, builder.diffuse(0.6f));
+  builder.shape(testing::cube(Transform::translate(-1.5, 0.5, 0) * Transform::scale(0.1, 0.5, 1)), builder.add(coated));
+  builder.shape(SphereDescription{{1.8f, 0.7f, 0}, 0.5f}, builder.diffuse(0), 2);
+  builder.look({-0.4, 2.2, 0.1}, {-0.5, 0, 0});
+  expect_same_light(wide_view(builder, 30), 240, 1024);
 }
 
 TEST(LightAudit, SeesThroughAThinLens) {
@@ -242,6 +256,42 @@ TEST(LightAudit, FollowsShadingNormals) {
   expect_same_light(wide_view(builder, 35), 400, 512);
 }
 
+// A normal map on the floor, which alone lights the wall that is seen: not reciprocal, so that particles which
+// take the weights of paths light it 37 % too much.
+TEST(LightAudit, FollowsNormalMaps) {
+  const auto scene = [](bool tilted) {
+    SceneBuilder builder;
+    const int grey = builder.diffuse(0.8f);
+    const Vec3f n = normalize(Vec3f{0.7f, 0, 1});
+    const Rgb colour = tilted ? Rgb{0.5f * (n.x + 1), 0.5f * (n.y + 1), 0.5f * (n.z + 1)} : Rgb{0.5f, 0.5f, 1};
+    const int normals = builder.texture(CheckerboardDescription{colour, colour, {}});
+    builder.floor(0, 1, builder.add(NormalMapDescription{grey, normals}));
+    // A wall that only the floor lights: the lamp shines down.
+    builder.shape(
+        RectangleDescription{Transform::translate(1.2, 0.9, 0) * Transform::rotate(0, 1, 0, -90) * Transform::scale(1, 0.5, 1)},
+        grey);
+    builder.lamp_down(-0.3f, 1.5f, 0, 0.4f, 0.4f, builder.diffuse(0), 5);
+    builder.look({-0.4, 1.2, 0}, {1.2, 0.7, 0});
+    return wide_view(builder, 35);
+  };
+  expect_same_light(scene(true), 400, 512);
+  // Twin: without the map the floor throws other light on the wall.
+  EXPECT_GT(worst_z(light_side(scene(false), 24), camera_side(scene(true), 64)), 5);
+}
+
+TEST(LightAudit, FollowsRoughGlass) {
+  RoughDielectricDescription rough;
+  rough.roughness.alpha_u = rough.roughness.alpha_v = 0.3f;
+  SceneBuilder builder;
+  builder.floor(0, 3, builder.diffuse(0.6f));
+  builder.shape(
+      testing::cube(Transform::translate(-1.3, 0.5, 0) * Transform::rotate(0, 0, 1, 20) * Transform::scale(0.1, 0.45, 0.6)),
+      builder.add(rough));
+  builder.shape(SphereDescription{{-2.1f, 0.7f, 0}, 0.5f}, builder.diffuse(0), 2);
+  builder.look({0.3, 2.2, 0.1}, {0, 0, 0});
+  expect_same_light(wide_view(builder, 30), 320, 1536);
+}
+
 TEST(LightAudit, FindsTheLightOfABulbUnreachable) {
   const auto lamp_over_floor = [](bool bulb) {
     SceneBuilder builder;
@@ -269,8 +319,7 @@ TEST(LightAudit, KeepsABulbFromBeingClaimed) {
   builder.look({2, 2, 0}, {1.2, 0, 0});
   const Scene scene(wide_view(builder, 35), 1);
   const auto integrator = make_integrator("path", scene);
-  const std::atomic<bool> never{false};
-  const FrameResult result = render_frame(scene, *integrator, {kFrame, 64, 2, 1, {{}, {}, 0.1}}, never);
+  const FrameResult result = render_frame(scene, *integrator, {kFrame, 64, 2, 1, {{}, {}, 0.1}}, kNever);
   ASSERT_EQ(result.warnings.size(), 1u);
   EXPECT_NE(result.warnings[0].find("about 100 % of the picture's light"), std::string::npos) << result.warnings[0];
   EXPECT_GT(result.error_unseen.value(), 0.1);
@@ -281,34 +330,101 @@ TEST(LightAudit, KeepsABulbFromBeingClaimed) {
   EXPECT_EQ(blind.bound, 0);
 }
 
+// The bulb of a point light stands in that room, too: every field of every cell has something to say.
+SceneBuilder room_with_a_bulb() {
+  SceneBuilder builder = room(DielectricDescription{});
+  builder.shape(SphereDescription{{0.4f, -0.3f, -0.3f}, 0.1f}, builder.add(DielectricDescription{}));
+  builder.emitter(PointEmitterDescription{{0.4f, -0.3f, -0.3f}, Rgb{0.2f}});
+  return builder;
+}
+
 TEST(LightAudit, IsTheSameForAnyNumberOfThreads) {
-  const Scene scene(wide_view(room(DielectricDescription{}), 50), 1);
-  const LightAudit one = audit_light(scene, kFrame, 3, 1).value(), three = audit_light(scene, kFrame, 3, 3).value();
+  const Scene scene(wide_view(room_with_a_bulb(), 50), 1);
+  const LightAudit one = audit_light(scene, kFrame, 3, 1, kNever), three = audit_light(scene, kFrame, 3, 3, kNever);
   ASSERT_EQ(one.cells.size(), three.cells.size());
+  double blind = 0;
   for (std::size_t i = 0; i < one.cells.size(); ++i) {
     EXPECT_EQ(one.cells[i].radiance, three.cells[i].radiance);
     EXPECT_EQ(one.cells[i].variance, three.cells[i].variance);
+    EXPECT_EQ(one.cells[i].unreachable, three.cells[i].unreachable);
+    EXPECT_EQ(one.cells[i].blind, three.cells[i].blind);
+    EXPECT_GT(one.cells[i].unreachable, 0);
+    blind += one.cells[i].blind;
   }
-  EXPECT_NE(one.cells[0].radiance, audit_light(scene, kFrame, 4, 1)->cells[0].radiance);
+  EXPECT_EQ(one.unreachable_share, three.unreachable_share);
+  EXPECT_GT(one.unreachable_share, 0);
+  EXPECT_GT(blind, 0);
+  // Twin: another seed is another audit.
+  const LightAudit other = audit_light(scene, kFrame, 4, 1, kNever);
+  EXPECT_NE(one.cells[0].radiance, other.cells[0].radiance);
+  EXPECT_NE(one.cells[0].unreachable, other.cells[0].unreachable);
 }
 
-TEST(LightAudit, CropKeepsItsCells) {
+// While both take the least number of particles, which depends on the crop above it: then the cells differ by their noise.
+TEST(LightAudit, OfASmallCropKeepsItsCells) {
   const Scene scene(wide_view(room(DiffuseDescription{Rgb{0.5f}}), 50), 1);
-  const LightAudit whole = audit_light(scene, kFrame, 3, 1).value(), part = audit_light(scene, {32, 32, 32, 32}, 3, 1).value();
+  const LightAudit whole = audit_light(scene, kFrame, 3, 1, kNever), part = audit_light(scene, {32, 32, 32, 32}, 3, 1, kNever);
   ASSERT_EQ(part.cells.size(), 1u);
   EXPECT_EQ(part.cells[0].radiance, whole.cells[3].radiance);
+}
+
+TEST(LightAudit, EndsWhenItIsCancelled) {
+  const std::atomic<bool> cancelled{true};
+  const Scene scene(wide_view(room_with_a_bulb(), 50), 1);
+  EXPECT_THROW(audit_light(scene, kFrame, 3, 2, cancelled), CancelledError);
+  AuditMemory memory;
+  EXPECT_THROW(memory.find(scene, kFrame, 3, 2, cancelled), CancelledError);
+  // Nothing of it is kept: the next one is whole.
+  const LightAudit next = memory.find(scene, kFrame, 3, 2, kNever);
+  EXPECT_EQ(next.cells[0].radiance, audit_light(scene, kFrame, 3, 2, kNever).cells[0].radiance);
+  EXPECT_NO_THROW(memory.find(scene, kFrame, 3, 2, cancelled)) << "that one is kept, and costs nothing";
+}
+
+// Flux beyond all numbers is not followed, and leaves no share that is no number.
+TEST(LightAudit, SurvivesEmittersBeyondAllNumbers) {
+  for (const float intensity : {1e37f, 2e38f}) {
+    SceneBuilder builder = room_with_a_bulb();
+    builder.emitter(PointEmitterDescription{{0, 0.5f, 0}, Rgb{intensity}});
+    const LightAudit audit = audit_light(Scene(wide_view(builder, 50), 1), kFrame, 3, 1, kNever);
+    EXPECT_TRUE(std::isfinite(audit.unreachable_share)) << intensity;
+    for (const LightAudit::Cell& cell : audit.cells) EXPECT_TRUE(std::isfinite(cell.radiance + cell.unreachable)) << intensity;
+  }
 }
 
 TEST(LightAudit, IsLeftOutWhereItHasNothingToSay) {
   SceneBuilder sky;
   sky.floor(0, 1, sky.diffuse(0.5f)).emitter(ConstantEmitterDescription{}).look({0, 1, 0}, {0, 0, 0});
   EXPECT_EQ(audit_need(Scene(sky.description(), 1)).kind, AuditNeed::kNotNeeded);
-  EXPECT_TRUE(audit_light(Scene(sky.description(), 1), {0, 0, 4, 4}, 0, 1).has_value());
+  EXPECT_EQ(audit_light(Scene(sky.description(), 1), {0, 0, 4, 4}, 0, 1, kNever).outcome, LightAudit::kAudited);
 
   SceneBuilder fog = room(DiffuseDescription{});
   fog.interior(fog.medium({}));
   EXPECT_EQ(audit_need(Scene(fog.description(), 1)).kind, AuditNeed::kNotPossible);
-  EXPECT_FALSE(audit_light(Scene(fog.description(), 1), {0, 0, 4, 4}, 0, 1).has_value());
+  EXPECT_EQ(audit_light(Scene(fog.description(), 1), {0, 0, 4, 4}, 0, 1, kNever).outcome, LightAudit::kNotPossible);
+}
+
+// A bulb and, somewhere, a boundary that light passes: the picture is black, and nobody can say so.
+TEST(LightAudit, KeepsABulbFromBeingClaimedWhereItIsNotPossible) {
+  const auto render = [](bool glass) {
+    SceneBuilder builder;
+    builder.floor(0, 3, builder.diffuse(0.5f)).emitter(PointEmitterDescription{{0, 1, 0}, Rgb{1}});
+    if (glass) builder.shape(SphereDescription{{0, 1, 0}, 0.2f}, builder.add(DielectricDescription{}));
+    builder.shape(SphereDescription{{0, 2, 5}, 0.2f}, builder.add(NullDescription{}));
+    builder.look({2, 2, 0}, {1.2, 0, 0});
+    const Scene scene(wide_view(builder, 35), 1);
+    const auto integrator = make_integrator("path", scene);
+    return render_frame(scene, *integrator, {kFrame, 64, 2, 1, {{}, {}, 0.1}}, kNever);
+  };
+  const FrameResult bulb = render(true);
+  ASSERT_EQ(bulb.warnings.size(), 1u);
+  EXPECT_EQ(bulb.warnings[0].find("goal not reached"), 0u) << bulb.warnings[0];
+  EXPECT_GT(bulb.timeline.back().error_bound.value(), 0.1);
+  EXPECT_FALSE(bulb.error_unseen.has_value());
+  // Twin: without glass around it the light is found, and claimed with a word on what the claim rests on.
+  const FrameResult open = render(false);
+  ASSERT_EQ(open.warnings.size(), 1u);
+  EXPECT_NE(open.warnings[0].find("noise alone"), std::string::npos) << open.warnings[0];
+  EXPECT_LE(open.timeline.back().error_bound.value(), 0.1);
 }
 
 }  // namespace

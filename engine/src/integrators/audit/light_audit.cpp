@@ -1,6 +1,8 @@
 #include "integrators/audit/light_audit.h"
 
 #include <algorithm>
+#include <optional>
+#include <utility>
 #include <vector>
 
 #include "film/error_goal.h"
@@ -8,6 +10,7 @@
 #include "integrators/audit/key_random.h"
 #include "integrators/audit/light_particle.h"
 #include "integrators/path/path_vertex.h"
+#include "support/error.h"
 #include "support/parallel.h"
 
 namespace fluxfarm {
@@ -21,6 +24,19 @@ constexpr std::int64_t kLeastParticles = 1 << 14, kMostParticles = 1 << 22;
 constexpr std::uint32_t kGroups = 64;
 // Side of the squares of pixels in each of which one probe looks for smooth surfaces.
 constexpr int kProbeSide = 4;
+
+// What is asked of an audit.
+struct Task {
+  const Scene& scene;
+  PixelRect crop;
+  std::uint64_t seed;
+  int threads;
+  const std::atomic<bool>& cancelled;
+
+  void check() const {
+    if (cancelled.load(std::memory_order_relaxed)) throw CancelledError();
+  }
+};
 
 // Sums over particles, of one cell.
 struct CellSums {
@@ -81,16 +97,16 @@ class GroupSums {
   std::vector<Own> own_;  // of the particle at hand
 };
 
-std::vector<GroupSums> trace_particles(const Scene& scene, PixelRect crop, std::uint64_t seed, int threads,
-                                       std::uint32_t particles) {
-  const ParticleTracer tracer(scene, seed, particles);
-  const Grid grid(crop);
-  std::vector<GroupSums> groups(kGroups, GroupSums(make_tiles(crop, kErrorTile).size()));
-  parallel_for(kGroups, threads, [&](std::size_t group, int) {
+std::vector<GroupSums> trace_particles(const Task& task, std::uint32_t particles) {
+  const ParticleTracer tracer(task.scene, task.seed, particles);
+  const Grid grid(task.crop);
+  std::vector<GroupSums> groups(kGroups, GroupSums(make_tiles(task.crop, kErrorTile).size()));
+  parallel_for(kGroups, task.threads, [&](std::size_t group, int) {
     prepare_render_thread();
-    RayQueries queries(scene.accelerator());
+    RayQueries queries(task.scene.accelerator());
     ParticleTrace trace;
     for (auto index = static_cast<std::uint32_t>(group); index < particles; index += kGroups) {
+      task.check();
       tracer.trace(index, queries, trace);
       groups[group].add(trace, grid);
     }
@@ -112,20 +128,21 @@ bool sees_smooth(const Scene& scene, RayQueries& queries, float x, float y, KeyR
   return scatter && scatter->delta;
 }
 
-void find_blind_shares(const Scene& scene, PixelRect crop, std::uint64_t seed, int threads, LightAudit& audit) {
-  const std::vector<PixelRect> cells = make_tiles(crop, kErrorTile);
-  parallel_for(cells.size(), threads, [&](std::size_t index, int) {
+void find_blind_shares(const Task& task, LightAudit& audit) {
+  const std::vector<PixelRect> cells = make_tiles(task.crop, kErrorTile);
+  parallel_for(cells.size(), task.threads, [&](std::size_t index, int) {
+    task.check();
     prepare_render_thread();
-    RayQueries queries(scene.accelerator());
+    RayQueries queries(task.scene.accelerator());
     const std::vector<PixelRect> squares = make_tiles(cells[index], kProbeSide);
     int smooth = 0;
     for (const PixelRect& square : squares) {
       const auto key = (static_cast<std::uint64_t>(square.y) << 32) | static_cast<std::uint64_t>(square.x);
-      KeyRandom random(seed, KeyRandom::kProbe, key);
+      KeyRandom random(task.seed, KeyRandom::kProbe, key);
       const Vec2f u = random.next_2d();
       const float x = static_cast<float>(square.x) + u.x * static_cast<float>(square.width);
       const float y = static_cast<float>(square.y) + u.y * static_cast<float>(square.height);
-      smooth += sees_smooth(scene, queries, x, y, random);
+      smooth += sees_smooth(task.scene, queries, x, y, random);
     }
     audit.cells[index].blind = smooth / static_cast<double>(squares.size());
   });
@@ -139,25 +156,32 @@ AuditNeed audit_need(const Scene& scene) {
     return {AuditNeed::kNotNeeded,
             census.environment ? "a constant environment alone, which paths find with bounded weights" : "nothing emits"};
   }
-  if (census.media > 0) return {AuditNeed::kNotPossible, "not modelled in media: light that is never sampled goes unnoticed"};
-  if (census.null_boundaries) {
-    return {AuditNeed::kNotPossible, "not modelled with null boundaries: light that is never sampled goes unnoticed"};
+  if (census.media > 0 || census.null_boundaries) {
+    const bool unreachable = census.delta_lobes && census.point_emitters + census.spot_emitters + census.directional_emitters > 0;
+    std::string reason = census.media > 0 ? "not modelled in media" : "not modelled with null boundaries";
+    reason += unreachable ? ": no error goal is claimed where point, spot or directional emitters meet smooth surfaces"
+                          : ": light that is never sampled goes unnoticed";
+    return {AuditNeed::kNotPossible, std::move(reason), unreachable};
   }
   return {AuditNeed::kNeeded, "for an error goal: particles from the emitters look for light that paths miss"};
 }
 
-std::optional<LightAudit> audit_light(const Scene& scene, PixelRect crop, std::uint64_t seed, int threads) {
+LightAudit audit_light(const Scene& scene, PixelRect crop, std::uint64_t seed, int threads, const std::atomic<bool>& cancelled) {
   const AuditNeed need = audit_need(scene);
-  if (need.kind == AuditNeed::kNotPossible) return std::nullopt;
-  const std::vector<PixelRect> rects = make_tiles(crop, kErrorTile);
   LightAudit audit;
+  if (need.kind == AuditNeed::kNotPossible) {
+    audit.outcome = need.unreachable ? LightAudit::kNotPossibleWithUnreachable : LightAudit::kNotPossible;
+    return audit;
+  }
+  const std::vector<PixelRect> rects = make_tiles(crop, kErrorTile);
   audit.cells.resize(rects.size());
   if (need.kind == AuditNeed::kNotNeeded) return audit;
 
+  const Task task{scene, crop, seed, threads, cancelled};
   const std::int64_t pixels = crop.pixels();
   const auto particles = static_cast<std::uint32_t>(std::clamp(pixels / kPixelsToAParticle, kLeastParticles, kMostParticles));
   double arrived = 0, arrived_unreachable = 0;
-  for (const GroupSums& group : trace_particles(scene, crop, seed, threads, particles)) {
+  for (const GroupSums& group : trace_particles(task, particles)) {
     arrived += group.arrived;
     arrived_unreachable += group.arrived_unreachable;
     for (std::size_t i = 0; i < rects.size(); ++i) {
@@ -169,7 +193,7 @@ std::optional<LightAudit> audit_light(const Scene& scene, PixelRect crop, std::u
   }
   if (arrived_unreachable > 0) {
     audit.unreachable_share = arrived_unreachable / arrived;
-    find_blind_shares(scene, crop, seed, threads, audit);
+    find_blind_shares(task, audit);
   }
   return audit;
 }

@@ -8,8 +8,8 @@
 // camera find with bounded weights. Participating media are not modelled.
 #pragma once
 
+#include <atomic>
 #include <cstdint>
-#include <optional>
 #include <string>
 
 #include "film/light_audit.h"
@@ -18,15 +18,16 @@
 
 namespace fluxfarm {
 
-// Whether a scene is audited, and why.
+// Whether a scene is audited, and why. `unreachable`: it cannot be, and has what makes light that no path finds.
 struct AuditNeed {
   enum Kind { kNeeded, kNotNeeded, kNotPossible } kind;
   std::string reason;
+  bool unreachable = false;
 };
 AuditNeed audit_need(const Scene& scene);
 
-// The audit of the part `crop` of the frame; of a scene that needs none, one that finds nothing. Empty: it is not possible. Depends
-// on the first three alone.
-std::optional<LightAudit> audit_light(const Scene& scene, PixelRect crop, std::uint64_t seed, int threads);
+// The audit of the part `crop` of the frame; of a scene that needs none, one that finds nothing; where it is not possible, one
+// without cells that says so. Depends on the first three alone. Throws CancelledError soon after `cancelled` becomes true.
+LightAudit audit_light(const Scene& scene, PixelRect crop, std::uint64_t seed, int threads, const std::atomic<bool>& cancelled);
 
 }  // namespace fluxfarm

@@ -14,18 +14,28 @@ namespace {
 DiscreteDistribution choice_of(const std::vector<const Emitter*>& emitters) {
   std::vector<double> weights;
   double total = 0;
-  for (const Emitter* emitter : emitters) total += weights.emplace_back(static_cast<double>(mean(emitter->power())));
+  for (const Emitter* emitter : emitters) {
+    const auto power = static_cast<double>(mean(emitter->power()));
+    total += weights.emplace_back(std::isfinite(power) ? power : 0.0);  // what is beyond all numbers cannot be followed
+  }
   for (double& weight : weights) weight = weight > 0 ? 0.5 * weight / total + 0.5 / static_cast<double>(weights.size()) : 0.0;
   return DiscreteDistribution(weights);
 }
 
-// Scattering of flux where a BSDF describes that of radiance: around a shading normal the cosines that the two leave out differ.
-//                                                                                                      [Veach97, section 5.3.2]
-float flux_by_radiance(const PathVertex& vertex, Vec3f from, Vec3f towards, float cos_towards) {
-  const float geometric_from = std::fabs(dot(from, vertex.point.geometric_normal));
-  const float geometric_towards = std::fabs(dot(towards, vertex.point.geometric_normal));
-  const float below = geometric_from * std::fabs(cos_towards);
-  return below > 0 ? std::fabs(vertex.wo.z) * geometric_towards / below : 0.0f;
+// What is left of flux that arrived from `from` (world) and was scattered as `s` says, towards `towards` (world). A BSDF describes
+// the scattering of radiance, which comes to a path from where the flux goes: its directions are exchanged, and with them the
+// scaling by refraction. Around a shading normal the cosines that the two leave out differ.              [Veach97, section 5.3.2]
+//
+// A delta lobe has no value to ask for. It is taken to scatter both ways alike, up to the scaling by refraction, which holds but
+// for those under a normal map: they miss the ratio of the cosines to the shading normal.
+Rgb scattered_flux(const PathVertex& vertex, Vec3f from, Vec3f towards, const BsdfSample& s) {
+  const float arriving = std::fabs(dot(from, vertex.point.geometric_normal));
+  const float leaving = std::fabs(dot(towards, vertex.point.geometric_normal));
+  if (!(arriving > 0)) return {};
+  const float cosines = std::fabs(vertex.wo.z) * leaving / arriving;
+  if (!s.delta) return vertex.bsdf->value(s.wi, vertex.wo).f * (cosines / s.pdf);
+  const float cos_leaving = std::fabs(s.wi.z);
+  return cos_leaving > 0 ? s.weight * (s.eta * s.eta * cosines / cos_leaving) : Rgb{};
 }
 
 }  // namespace
@@ -55,7 +65,7 @@ void ParticleTracer::trace(std::uint32_t index, RayQueries& queries, ParticleTra
   if (!emission) return;
   Particle particle{emission->flux / choice.probability, emission->ray, emission->delta, false, random};
   const float begun_with = max_component(particle.flux);
-  if (!(begun_with > 0)) return;
+  if (!(begun_with > 0) || !is_finite(particle.flux)) return;
 
   BsdfSpace space;
   // Paths have `bounces` surfaces between the emitter and the camera.
@@ -77,8 +87,8 @@ void ParticleTracer::trace(std::uint32_t index, RayQueries& queries, ParticleTra
     // Next-event estimation alone finds a delta light, and never over a delta lobe.
     if (bounces == 1 && particle.delta_emitter && scatter->delta) particle.unreachable = true;
     const Vec3f direction = vertex.frame.to_world(scatter->wi);
-    const float cosines = flux_by_radiance(vertex, -particle.ray.direction, direction, scatter->wi.z);
-    particle.flux *= scatter->weight * (scatter->eta * scatter->eta * cosines);
+    particle.flux *= scattered_flux(vertex, -particle.ray.direction, direction, *scatter);
+    if (!is_finite(particle.flux)) return;
     const float survival = std::min(max_component(particle.flux) / begun_with, kMaxSurvival);
     if (!(particle.random.next_1d() < survival)) return;
     particle.flux *= 1 / survival;

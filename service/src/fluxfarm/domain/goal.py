@@ -44,7 +44,8 @@ class Measured:
 
     `round` is None once an error goal needs no further one. `spp` are the samples taken of each of its pixels,
     `sample_s` the seconds that one more of each will take by the rate so far (0: unknown). `error_bound` is there at a
-    decision, and `unseen_warning` at one that ends the job because paths cannot find all of its light."""
+    decision, and `unseen_warning` at one that ends the job because paths cannot find all of its light, or claims the
+    goal without an audit."""
 
     round: Round | None
     spp: int
@@ -57,7 +58,7 @@ class Measured:
 
 @dataclass(frozen=True, slots=True)
 class Stop:
-    """The job has its samples. `warning` tells the owner why the goal was not reached, or is None when it was."""
+    """The job has its samples. `warning` tells the owner why the goal was not reached, or what its claim rests on."""
 
     warning: str | None = None
 
@@ -93,24 +94,24 @@ def first_round(goal: Goal, limits: Limits) -> Round:
 def next_pass(goal: Goal, limits: Limits, measured: Measured) -> SampleRange | Stop:
     """The samples of the next pass of the round, or Stop. `goal` is settled."""
     if measured.round is None or measured.spp >= measured.round.samples.end:
-        return Stop(_unreached(goal, measured))
+        return Stop(_warning(goal, measured))
     samples = next_range(measured.spp, measured.round.samples.end)
     seconds = min((s for s in (goal.seconds, limits.seconds) if s is not None), default=None)
     if seconds is None or measured.sample_s <= 0:
         return samples
     fitting = (seconds - measured.running_s) / measured.sample_s
     if fitting < LEAST_FITTING_SHARE:
-        return Stop(_unreached(goal, measured))
+        return Stop(_warning(goal, measured))
     return SampleRange(samples.begin, samples.begin + max(1, min(samples.count, int(fitting))))
 
 
-def _unreached(goal: Goal, measured: Measured) -> str | None:
-    """Why stopping now misses the goal, or None if it does not."""
+def _warning(goal: Goal, measured: Measured) -> str | None:
+    """Why stopping now misses the goal or what its claim rests on, or None if there is nothing to say."""
     if goal.rel_error is not None:
-        if measured.error_bound is not None and measured.error_bound <= goal.rel_error:
-            return None
         if measured.unseen_warning is not None:
             return measured.unseen_warning
+        if measured.error_bound is not None and measured.error_bound <= goal.rel_error:
+            return None
         error = "unknown" if measured.error_noise is None else f"{measured.error_noise:.4g}"
         return (
             f"goal not reached with 95 % confidence: the error is about {error} after at most {measured.spp} samples "

@@ -47,7 +47,7 @@ class Revision:
     Where an error goal was decided, `error_bound` is the bound that may end the job, `next_round` what follows (None:
     no tile may take more samples, or the goal is reached) and `samples_expected` the camera samples of the whole job.
     `error_unseen` is the part of the bound by light that paths did not find (None: not audited), and `unseen_warning`
-    says why the job ends without its goal, if that is the reason.
+    says why the job ends without its goal, if that is the reason, or that the claim rests on noise alone.
     """
 
     number: int
