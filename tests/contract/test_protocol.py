@@ -1,6 +1,7 @@
 """The service's side of proto/fluxfarm/v1: frames out, outcomes in."""
 
 import contextlib
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -9,13 +10,22 @@ from hypothesis import strategies as st
 
 from fluxfarm.adapters.engine import codec
 from fluxfarm.adapters.protocol import engine_pb2 as pb
-from fluxfarm.domain.leases import FailureKind, LeaseFailed, RenderLease, SceneRef, TileRendered
+from fluxfarm.domain.leases import (
+    Decision,
+    FailureKind,
+    ImageInfo,
+    LeaseFailed,
+    MergeLease,
+    RenderLease,
+    SceneRef,
+    TileRendered,
+)
 from fluxfarm.domain.schedule import SampleRange
 from fluxfarm.domain.tiles import PixelRect
 
 SCENE = SceneRef("key", Path("/scene"), "scene.xml", 0, 0, "")
 RECTS = (PixelRect(0, 0, 16, 16), PixelRect(16, 0, 8, 16))
-LEASE = RenderLease(7, "job", SCENE, 2**53 - 1, 3, SampleRange(4, 8), (0, 1), RECTS)
+LEASE = RenderLease(7, "job", SCENE, 2**53 - 1, 3, SampleRange(4, 8), (0, 1), RECTS, Path("/scratch/7"))
 
 
 def test_lease_becomes_one_frame_with_its_length_in_front() -> None:
@@ -25,13 +35,25 @@ def test_lease_becomes_one_frame_with_its_length_in_front() -> None:
     request = pb.Request.FromString(frame[4:])
     work = request.render_tiles
     assert (request.request_id, work.seed, work.samples.begin, work.samples.end) == (5, 2**53 - 1, 4, 8)
+    assert f"{work.tiles_out}-1.tile" == str(LEASE.file(1))
     assert [(tile.x, tile.y, tile.width, tile.height) for tile in work.tiles] == [(0, 0, 16, 16), (16, 0, 8, 16)]
 
 
+def test_decision_names_its_scene() -> None:
+    info, crop = ImageInfo("job", "digest", "path", 1), PixelRect(0, 0, 16, 16)
+    files = (Path("/tiles/t"),), None, Path("/scratch/8.exr"), Path("/scratch/8.png")
+    merge = MergeLease(8, "job", 16, 16, crop, None, *files, info, 1, Decision(0.1, 2, 64, SCENE))
+    work = pb.Request.FromString(codec.lease(5, merge)[4:]).merge_pass
+    goal = work.error_goal
+    assert (goal.rel_error, goal.round, goal.most_samples, goal.scene_key) == (0.1, 2, 64, "key")
+    without = pb.Request.FromString(codec.lease(5, replace(merge, decision=None))[4:]).merge_pass
+    assert not without.HasField("error_goal")
+
+
 def test_tile_done_becomes_an_outcome_that_is_not_the_last() -> None:
-    reply = pb.Reply(request_id=5, tile_done=pb.TileDone(tile=1, sums=b"sums", seconds=0.5, rays=9))
+    reply = pb.Reply(request_id=5, tile_done=pb.TileDone(tile=1, bytes=1000, seconds=0.5, rays=9))
     outcome, last = codec.outcome(LEASE, codec.decode(reply.SerializeToString()))
-    assert outcome == TileRendered(LEASE, 1, b"sums", 0.5, 9, 0)
+    assert outcome == TileRendered(LEASE, 1, 1000, 0.5, 9, 0)
     assert not last
 
 

@@ -9,6 +9,8 @@ Lines `fake: VERB ARGUMENTS` anywhere in the scene file, for example inside XML 
     crash_once FILE    the same in the second pass, but only if FILE is not there yet (it is made first)
     run_out FILE       RenderTiles answers RESOURCE twice, counting in FILE
     deaf               renders for ever and does not hear Cancel
+    damage HOW N FILE  the first tile of RenderTiles, N times, counting in FILE: its file is `missing` or `cut`
+    unseen E TEXT      decisions find the error E by missing light and end the job with the warning TEXT
 
 The sums of a tile depend on (seed, rect, sample range) alone; a film is the digests of all tiles merged so far.
 """
@@ -16,6 +18,7 @@ The sums of a tile depend on (seed, rect, sample range) alone; a film is the dig
 import argparse
 import contextlib
 import hashlib
+import json
 import os
 import queue
 import re
@@ -28,6 +31,7 @@ from pathlib import Path
 
 from fluxfarm.adapters.protocol import engine_pb2 as pb
 
+PROTOCOL_VERSION = 4
 EXR_MAGIC = b"\x76\x2f\x31\x01"
 PNG_MAGIC = b"\x89PNG\r\n\x1a\n"
 
@@ -44,7 +48,12 @@ class FakeEngine:
         self.scenes: dict[str, dict[str, str]] = {}
 
     def run(self) -> None:
-        self.reply(0, hello=pb.Hello(protocol_version=3, engine_build="fake-1", threads=self.threads, pid=os.getpid()))
+        self.reply(
+            0,
+            hello=pb.Hello(
+                protocol_version=PROTOCOL_VERSION, engine_build="fake-1", threads=self.threads, pid=os.getpid()
+            ),
+        )
         threading.Thread(target=self.read_to_the_end, daemon=True).start()
         while (request := self.requests.get()) is not None:
             kind = request.WhichOneof("body")
@@ -107,7 +116,8 @@ class FakeEngine:
         while "deaf" in told:
             time.sleep(1)
         for index, rect in enumerate(work.tiles):
-            self.crash_if_told(told, work.samples)
+            file = Path(f"{work.tiles_out}-{index}.tile")
+            self.crash_if_told(told, work.samples, file)
             self.wait(request_id, float(told.get("tile_seconds", 0)))
             key = f"{work.seed} {rect.x},{rect.y},{rect.width},{rect.height} {work.samples.begin}-{work.samples.end}"
             sums = pb.TileSums(
@@ -115,13 +125,17 @@ class FakeEngine:
             )
             count = work.samples.end - work.samples.begin
             seconds = float(told.get("tile_seconds", 0.0001))
-            done = pb.TileDone(
-                tile=index, sums=sums.SerializeToString(), seconds=seconds, rays=rect.width * rect.height * count
-            )
+            size = file.write_bytes(sums.SerializeToString())
+            if index == 0 and "damage" in told:
+                damage(file, *told["damage"].split())
+            done = pb.TileDone(tile=index, bytes=size, seconds=seconds, rays=rect.width * rect.height * count)
             self.reply(request_id, tile_done=done)
         return self.reply(request_id, tiles_done=pb.TilesDone())
 
     def merge_pass(self, request_id: int, work: pb.MergePass) -> None:
+        decides = work.HasField("error_goal")
+        if decides and work.error_goal.scene_key not in self.scenes:
+            return self.fail(request_id, pb.FAILURE_KIND_RESOURCE, "the scene to audit is not loaded, LoadScene first")
         film, samples = read(work.film_in), 0
         for file in work.tiles:
             tile = pb.TileSums.FromString(Path(file.path).read_bytes())
@@ -135,9 +149,9 @@ class FakeEngine:
         merged = pb.PassMerged(**counts, mean_r=0.5, mean_g=0.25, mean_b=0.125)
         if samples >= 2:
             merged.error_noise = samples**-0.5
-            if work.HasField("error_goal"):
-                decide(work, merged)
-        self.reply(request_id, pass_merged=merged)
+            if decides:
+                decide(work, merged, self.scenes[work.error_goal.scene_key])
+        return self.reply(request_id, pass_merged=merged)
 
     def write_tile(self, request_id: int, work: pb.WriteTile) -> None:
         Path(work.exr_out).write_bytes(image(read(work.film_in), len(work.tiles)))
@@ -152,13 +166,14 @@ class FakeEngine:
         if request_id in self.cancelled:
             raise Cancelled
 
-    def crash_if_told(self, told: dict[str, str], samples: pb.SampleRange) -> None:
+    def crash_if_told(self, told: dict[str, str], samples: pb.SampleRange, file: Path) -> None:
         once = told.get("crash_once")
         if once and samples.begin >= 1 and not Path(once).exists():
             append(once, b"crashed")
         elif int(told.get("crash_in_pass", -1)) != samples.begin:
             return
         print("about to crash, as told", flush=True)
+        file.write_bytes(b"half of a tile")
         os.kill(os.getpid(), signal.SIGKILL)
 
 
@@ -167,11 +182,26 @@ def image(film: bytes, samples: int) -> bytes:
     return EXR_MAGIC + struct.pack("<I", samples) + hashlib.sha256(film).digest() + bytes(1000)
 
 
-def decide(work: pb.MergePass, merged: pb.PassMerged) -> None:
-    """The bound is the estimate; while it is too large every tile goes on."""
+def damage(file: Path, how: str, most: str, counted: str) -> None:
+    if len(read(counted)) == int(most):
+        return
+    append(counted, b"x")
+    if how == "cut":
+        os.truncate(file, file.stat().st_size // 2)
+    else:
+        file.unlink()
+
+
+def decide(work: pb.MergePass, merged: pb.PassMerged, told: dict[str, str]) -> None:
+    """The bound is the estimate; while it is too large every tile goes on, unless light is missing."""
     goal, samples = work.error_goal, merged.max_samples
     merged.error_bound = merged.error_noise
     merged.samples_expected = work.crop.width * work.crop.height * goal.rel_error**-2
+    unseen, _, warning = told.get("unseen", "0").partition(" ")
+    merged.error_unseen, merged.warning = float(unseen), warning
+    if warning:
+        merged.error_bound = max(merged.error_bound, merged.error_unseen)
+        return
     if merged.error_bound > goal.rel_error and samples < goal.most_samples:
         tiles = -(-work.crop.width // 32) * -(-work.crop.height // 32)
         merged.next_round.samples.begin, merged.next_round.samples.end = samples, min(2 * samples, goal.most_samples)
@@ -195,7 +225,7 @@ def main() -> None:
     parser.add_argument("--json", action="store_true")
     arguments = parser.parse_args()
     if arguments.command == "info":
-        print('{"build": "fake-1", "protocol_version": 3}')
+        print(json.dumps({"build": "fake-1", "protocol_version": PROTOCOL_VERSION}))
         return
     FakeEngine(socket.socket(fileno=arguments.fd), arguments.threads).run()
 

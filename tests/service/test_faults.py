@@ -44,11 +44,51 @@ def test_scene_that_ends_three_processes_fails_while_another_job_goes_on(client:
     assert client.http.get("/v1/workers").json()["workers"][0]["restarts"] == 3
 
 
-def test_single_crash_costs_nothing_but_time(client: Client, tmp_path: Path) -> None:
+def scratch_files(settings: Settings) -> list[str]:
+    return [path.name for path in (settings.data / "jobs").glob("*/scratch/*")]
+
+
+def wait_until_scratch_is_empty(settings: Settings) -> None:
+    end = time.monotonic() + 5
+    while scratch_files(settings):
+        assert time.monotonic() < end, f"left behind: {scratch_files(settings)}"
+        time.sleep(0.02)
+
+
+def test_single_crash_costs_nothing_but_time(client: Client, settings: Settings, tmp_path: Path) -> None:
     scene = f"fake: size 64 64\nfake: spp 8\nfake: crash_once {tmp_path / 'crashed'}\n"
     job = client.succeed(client.submit(scene))
     assert (tmp_path / "crashed").exists()
     assert job["progress"]["samples_done"] == 64 * 64 * 8
+    wait_until_scratch_is_empty(settings)
+
+
+@pytest.mark.parametrize("how", ["missing", "cut"])
+def test_bad_tile_file_is_a_fault_of_its_lease_alone(
+    how: str, client: Client, settings: Settings, tmp_path: Path
+) -> None:
+    twice = client.submit(SCENE + f"fake: damage {how} 2 {tmp_path / 'twice'}\n")
+    always = client.submit(SCENE + f"fake: damage {how} 100 {tmp_path / 'always'}\n")
+    good = client.submit(SCENE)
+    client.succeed(twice)
+    assert (tmp_path / "twice").read_bytes() == b"xx"
+    assert client.image_digest(twice) == client.render(SCENE)
+    job = client.finish(always)
+    assert job["state"] == "FAILED"
+    assert "ran out of resources three times: a tile could not be stored" in job["reason"]
+    assert ("No such file" if how == "missing" else "bytes, but the engine process wrote") in job["reason"]
+    client.succeed(good)
+    assert client.http.get("/v1/workers").json()["workers"][0]["restarts"] == 0
+    wait_until_scratch_is_empty(settings)
+
+
+@pytest.mark.parametrize("verb", ["cancel", "pause"])
+def test_stopped_job_leaves_no_files_of_its_leases(verb: str, client: Client, settings: Settings) -> None:
+    job_id = client.submit(SCENE)
+    client.wait_until(job_id, lambda job: job["progress"]["tiles_done"] >= 3)
+    assert client.http.post(f"/v1/jobs/{job_id}:{verb}").status_code == 200
+    client.render("fake: spp 1\n")  # what the engine process had begun is over
+    wait_until_scratch_is_empty(settings)
 
 
 def test_scene_fault_fails_the_job_at_once_with_the_engines_words(client: Client) -> None:
@@ -140,7 +180,8 @@ def test_restart_leaves_nothing_behind_that_no_job_names(
         service.client.succeed(job_id)
     service.end(signal.SIGKILL)
     jobs = settings.data / "jobs"
-    litter = [settings.data / "incoming" / "upload", jobs / job_id / "tiles" / "x.tmp", jobs / "unknown"]
+    litter = [settings.data / "incoming" / "upload", jobs / job_id / "tiles" / ("0" * 64), jobs / "unknown"]
+    litter.append(jobs / job_id / "scratch" / "1-0.tile")
     for path in litter:
         path.write_bytes(b"") if path.name != "unknown" else path.mkdir()
     client = start()

@@ -21,6 +21,7 @@ from fluxfarm.domain.goal import Goal, Limits
 from fluxfarm.domain.job import STATE_SENTENCES, TERMINAL_STATES, TRANSITIONS, JobState
 from fluxfarm.domain.records import JobRequest, Revision, SceneFacts, TileCommit
 from fluxfarm.domain.scene import SceneBundle
+from fluxfarm.domain.schedule import Round, SampleRange
 from fluxfarm.domain.tiles import PixelRect, TileGrid
 from fluxfarm.errors import (
     Gone,
@@ -141,6 +142,22 @@ def test_revision_without_a_film_keeps_the_film_before_and_its_own_tiles(ledger:
         assert [(tile.pass_index, tile.tile) for tile in unmerged.tiles] == [(1, 0), (1, 1)]
         assert len(await ledger.record_revision(5, job_id, replace(REVISION, number=3, passes=3, film="g" * 64))) == 2
         assert (await ledger.unmerged(job_id)).film == "g" * 64
+
+    asyncio.run(scenario())
+
+
+def test_decision_of_an_error_goal_is_read_back_as_it_was_written(ledger: SqliteLedger) -> None:
+    async def scenario() -> None:
+        job_id = await running_job(ledger)
+        decided = {"error_bound": 0.5, "samples_expected": 1e6, "next_round": Round(2, SampleRange(16, 32), (0, 3))}
+        first = replace(REVISION, film=None, **decided)
+        missing = replace(
+            first, number=2, passes=2, next_round=None, error_unseen=0.25, unseen_warning="light is missing"
+        )
+        for fence, revision in ((2, first), (3, missing)):
+            ledger.grant(fence, job_id)
+            await ledger.record_revision(fence, job_id, revision)
+        assert await ledger.revisions(job_id) == [first, missing]
 
     asyncio.run(scenario())
 

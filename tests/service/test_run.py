@@ -14,6 +14,7 @@ from fluxfarm.domain.schedule import Round, SampleRange
 from fluxfarm.orchestrator.run import MERGE_PAUSE, PASSES_TO_A_FILM, JobRun
 
 LATER = 1e18
+SCENE = SceneRef("key", Path(), "scene.xml", 0, 0, "")
 
 
 def running(
@@ -25,7 +26,7 @@ def running(
     record = JobRecord(
         "job", JobState.RUNNING, None, request, 0.0, FACTS, GRID, (), 0, 0, 0, 0, merged_passes, 0.0, 0, 0, newest
     )
-    run = JobRun(record, SceneRef("key", Path(), "scene.xml", 0, 0, ""))
+    run = JobRun(record, SCENE)
     run.start(FACTS, GRID, unmerged, 0.0)
     return run
 
@@ -34,7 +35,7 @@ def finish_pass(run: JobRun, fence: int) -> OpenedPass:
     """Open the next pass and commit all of its tiles."""
     opened = run.open_pass(0.0)
     assert opened is not None
-    while (lease := run.take_lease(fence, 1, 1, 1.0)) is not None:
+    while (lease := run.take_lease(fence, 1, 1, 1.0, Path(str(fence)))) is not None:
         for tile in lease.tiles:
             run.commit(fence, lease.pass_index, tile, f"{lease.pass_index}-{tile}")
         run.end_lease(fence)
@@ -51,6 +52,18 @@ def merge(run: JobRun, began: float, ended: float, film: str | None = None, **de
 def ready(run: JobRun, now: float) -> list[int]:
     """Indices of the passes that would be merged now."""
     return [work.index for work in run.mergeable(now)]
+
+
+def test_lease_that_ends_early_gives_its_undone_tiles_back_and_names_their_files() -> None:
+    run = running(Goal(spp=4))
+    assert run.open_pass(0.0) is not None
+    lease = run.take_lease(7, 1, 1, 1.0, Path("scratch/7"))
+    assert lease is not None
+    run.commit(7, lease.pass_index, lease.tiles[0], "0" * 64)
+    assert run.end_lease(7) == [Path(f"scratch/7-{position}.tile") for position in range(1, len(lease.tiles))]
+    again = run.take_lease(8, 1, 1, 1.0, Path("scratch/8"))
+    assert again is not None
+    assert again.tiles == lease.tiles[1:]
 
 
 def test_next_merge_waits_in_proportion_to_the_last() -> None:
@@ -88,7 +101,7 @@ def test_merge_that_decides_an_error_goal_does_not_wait_and_nothing_is_rendered_
     take_first_round(run)
     assert run.open_pass(2.0) is None
     assert ready(run, 2.0) == [1, 2, 3, 4]
-    assert run.decision(run.mergeable(2.0)) == Decision(0.01, 1, 65_536)
+    assert run.decision(run.mergeable(2.0)) == Decision(0.01, 1, 65_536, SCENE)
 
 
 def test_round_of_some_tiles_renders_those_alone_until_it_is_decided_again() -> None:
@@ -100,7 +113,7 @@ def test_round_of_some_tiles_renders_those_alone_until_it_is_decided_again() -> 
     opened = finish_pass(run, 1000)
     assert (opened.samples, opened.tiles) == (SampleRange(16, 32), (1, 3))
     assert run.mergeable(LATER)[0].done.keys() == {1, 3}
-    assert run.decision(run.mergeable(LATER)) == Decision(0.01, 2, 65_536)
+    assert run.decision(run.mergeable(LATER)) == Decision(0.01, 2, 65_536, SCENE)
     merge(run, 4.0, 5.0, error_bound=0.009)
     assert run.open_pass(5.0) is None
     assert run.stop is not None
@@ -149,7 +162,7 @@ def test_restart_in_a_round_goes_on_with_its_tiles() -> None:
     begun = Unmerged(decision, 32, (OpenedPass(5, SampleRange(16, 32), (1, 3)),), "f" * 64, tiles)
     run = running(Goal(rel_error=0.01), begun, merged_passes=5)
     assert run.open_pass(0.0) is None, "tile 1 is missing"
-    lease = run.take_lease(1, 1, 1, 1.0)
+    lease = run.take_lease(1, 1, 1, 1.0, Path("1"))
     assert lease is not None
     assert lease.tiles == (1,)
 

@@ -128,6 +128,14 @@ def test_error_goal_stops_at_the_pass_that_meets_it(client: Client) -> None:
     assert job["warnings"] == []
 
 
+def test_error_goal_that_misses_light_ends_with_the_engines_warning(client: Client) -> None:
+    job_id = client.submit("fake: size 32 32\nfake: unseen 0.5 light is missing\n", goal={"rel_error": 0.3})
+    job = client.succeed(job_id)
+    assert job["warnings"] == ["light is missing"]
+    assert job["progress"]["samples_done"] == 32 * 32 * 16, "the first round decides"
+    assert client.http.get(f"/v1/jobs/{job_id}/report").json()["error"]["unseen"] == 0.5
+
+
 def test_limit_before_the_goal_is_a_warning(client: Client) -> None:
     job = client.succeed(client.submit("fake: size 32 32\n", goal={"rel_error": 0.001}, limits={"spp": 20}))
     assert job["progress"]["samples_done"] == 32 * 32 * 20

@@ -38,7 +38,7 @@ LoadSceneRequest decode(const v1::LoadScene& m) {
 }
 
 RenderTilesRequest decode(const v1::RenderTiles& m) {
-  RenderTilesRequest request{m.scene_key(), m.seed(), {m.samples().begin(), m.samples().end()}, {}};
+  RenderTilesRequest request{m.scene_key(), m.seed(), {m.samples().begin(), m.samples().end()}, {}, m.tiles_out()};
   for (const v1::PixelRect& tile : m.tiles()) request.tiles.push_back(decode(tile));
   return request;
 }
@@ -95,7 +95,7 @@ void encode(const ProgressReply& r, v1::Reply& out) { out.mutable_progress()->se
 void encode(const TileDoneReply& r, v1::Reply& out) {
   v1::TileDone& m = *out.mutable_tile_done();
   m.set_tile(r.tile);
-  m.set_sums(r.sums);
+  m.set_bytes(r.bytes);
   m.set_seconds(r.seconds);
   m.set_rays(r.rays);
   m.set_non_finite_samples(r.non_finite_samples);

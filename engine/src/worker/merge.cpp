@@ -3,16 +3,14 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
-#include <fstream>
 #include <functional>
 #include <span>
 
 #include "io/exr.h"
 #include "io/png.h"
-#include "support/error.h"
 #include "support/parallel.h"
 #include "worker/build_id.h"
-#include "worker/codec.h"
+#include "worker/tile_file.h"
 
 namespace fluxfarm {
 namespace {
@@ -20,29 +18,20 @@ namespace {
 // A larger film (264 bytes a pixel and 24 for each light layer) is read again rather than kept.
 constexpr std::int64_t kMostKeptPixels = 1 << 20;
 
-TileSums read_tile(const std::filesystem::path& path) {
-  std::ifstream in(path, std::ios::binary | std::ios::ate);
-  std::string bytes(in ? static_cast<std::size_t>(in.tellg()) : 0, '\0');
-  in.seekg(0);
-  if (!in.read(bytes.data(), static_cast<std::streamsize>(bytes.size())))
-    throw ResourceError(path.string() + ": cannot read the tile");
-  return decode_tile_sums(bytes, path.string());
-}
-
 ImageInfo with_build(ImageInfo info) {
   info.engine_build = engine_build_id();
   return info;
 }
 
 void merge_tiles(Film& film, std::span<const std::filesystem::path> tiles) {
-  for (const std::filesystem::path& path : tiles) film.merge(read_tile(path));
+  for (const std::filesystem::path& path : tiles) film.merge(read_tile_file(path));
 }
 
 // The film that the request's tiles are merged into. A new one takes its light layers from the first tile.
 template <typename Request>
 Film first_film(const Request& request, PixelRect crop) {
   if (!request.film_in.empty()) return Film::load(request.film_in);
-  const LightLayers layers = request.tiles.empty() ? LightLayers() : read_tile(request.tiles.front()).layers;
+  const LightLayers layers = request.tiles.empty() ? LightLayers() : read_tile_file(request.tiles.front()).layers;
   return Film(request.width, request.height, crop, layers);
 }
 

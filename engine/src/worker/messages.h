@@ -14,7 +14,7 @@
 
 namespace fluxfarm {
 
-inline constexpr std::uint32_t kProtocolVersion = 3;
+inline constexpr std::uint32_t kProtocolVersion = 4;
 
 // ---------------------------------------------------------------- requests
 
@@ -33,6 +33,9 @@ struct RenderTilesRequest {
   std::uint64_t seed = 0;
   SampleRange samples;
   std::vector<PixelRect> tiles;
+  std::string tiles_out;  // how the paths of the tiles' files begin
+
+  std::filesystem::path file(std::uint32_t tile) const { return tiles_out + "-" + std::to_string(tile) + ".tile"; }
 };
 
 // Film in, tiles added in the given order, film and images out; empty paths are skipped.
@@ -99,7 +102,7 @@ struct ProgressReply {
 
 struct TileDoneReply {
   std::uint32_t tile = 0;
-  std::string sums;  // encode_tile_sums()
+  std::uint64_t bytes = 0;  // of its file
   double seconds = 0;
   std::uint64_t rays = 0, non_finite_samples = 0;
 };

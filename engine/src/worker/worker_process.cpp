@@ -17,6 +17,7 @@
 #include "worker/job_queue.h"
 #include "worker/loaded_scene.h"
 #include "worker/merge.h"
+#include "worker/tile_file.h"
 #include "worker/tile_runner.h"
 
 namespace fluxfarm {
@@ -50,7 +51,8 @@ struct Running {
   std::atomic<bool> cancelled{false};
   // RenderTiles only:
   std::atomic<std::size_t> tiles_left{0};
-  std::atomic<bool> failed{false};
+  std::mutex failure_mutex;
+  std::optional<FailureReply> failure;  // the first one that is not a cancel
   std::atomic<std::uint64_t> samples{0};
   std::atomic<Clock::rep> last_progress{Clock::now().time_since_epoch().count()};
 };
@@ -186,24 +188,29 @@ class Worker {
                       running.cancelled, [&](std::uint64_t samples) { tell_progress(id, running, samples); });
       const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
       if (!running.cancelled) {
-        reply(id, TileDoneReply{tile, encode_tile_sums(sums), seconds, queries.rays(), sums.non_finite_samples});
+        const std::uint64_t bytes = write_tile_file(request.file(tile), sums);
+        reply(id, TileDoneReply{tile, bytes, seconds, queries.rays(), sums.non_finite_samples});
       }
     } catch (...) {
-      // The first failure answers the request and ends its other tiles.
-      const FailureReply failure = failure_of(std::current_exception());
-      if (failure.kind != FailureKind::kCancelled && !running.failed.exchange(true)) {
-        running.cancelled = true;
-        reply(id, failure);
-      }
+      note_failure(running, failure_of(std::current_exception()));
     }
     if (--running.tiles_left > 0) return;
     end(id);
-    if (running.failed) return;
-    if (running.cancelled) {
+    if (running.failure) {
+      reply(id, *running.failure);
+    } else if (running.cancelled) {
       reply(id, FailureReply{FailureKind::kCancelled, "cancelled"});
     } else {
       reply(id, TilesDoneReply{});
     }
+  }
+
+  // The first failure ends the other tiles of the request, and answers it when they have ended: until then they may write files.
+  static void note_failure(Running& running, const FailureReply& failure) {
+    if (failure.kind == FailureKind::kCancelled) return;
+    const std::lock_guard lock(running.failure_mutex);
+    if (!running.failure) running.failure = failure;
+    running.cancelled = true;
   }
 
   void tell_progress(std::uint64_t id, Running& running, std::uint64_t samples) {

@@ -19,6 +19,7 @@ from fluxfarm.domain.records import (
     Revision,
     SceneFacts,
     TileCommit,
+    TileFile,
     Unmerged,
 )
 from fluxfarm.domain.scene import SceneBundle
@@ -76,8 +77,8 @@ class BlobStore(Protocol):
     async def scene_folder(self, bundle: SceneBundle) -> Path:
         """A folder that holds the bundle's files under their own paths."""
 
-    async def put_tiles(self, tiles: Sequence[tuple[str, bytes]]) -> list[str]:
-        """Store (job id, sums) in order; returns their digests."""
+    async def adopt_tiles(self, tiles: Sequence[TileFile]) -> list[str | OSError]:
+        """Sync scratch files and move them to their digests; returns these in order, or why a file was dropped."""
 
     def tile(self, job_id: str, sha256: str) -> Path:
         """Path of a stored tile."""

@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <filesystem>
 
 #include "film/tile_grid.h"
 #include "support/error.h"
@@ -12,10 +13,13 @@
 #include "support/sky.h"
 #include "worker/codec.h"
 #include "worker/frame_socket.h"
+#include "worker/tile_file.h"
 #include "worker/tile_runner.h"
 
 namespace fluxfarm::testing {
 namespace {
+
+namespace fs = std::filesystem;
 
 SceneDescription small_scene() {
   SceneBuilder scene;
@@ -144,6 +148,37 @@ TEST(Codec, DamagedTileSumsAreAnError) {
                        {{0, 0, 2, 2}, {0, 1}, 0, std::vector<float>(12), std::vector<float>(32), 0, one, std::vector<float>(11)}),
                    "here"),
                ResourceError);
+}
+
+class TileFile : public ::testing::Test {
+ protected:
+  void SetUp() override { fs::create_directories(folder_); }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  const fs::path folder_ = fs::path(::testing::TempDir()) / ("tile-file-" + std::to_string(::getpid()));
+  const TileSums sums_{{0, 0, 2, 2}, {0, 1}, 7, std::vector<float>(12, 0.5f), std::vector<float>(32, 0.25f), 1};
+};
+
+TEST_F(TileFile, GivesBackTheSumsAndSaysItsLength) {
+  const fs::path path = folder_ / "1-0.tile";
+  const std::uint64_t bytes = write_tile_file(path, sums_);
+  EXPECT_EQ(bytes, fs::file_size(path));
+  const TileSums back = read_tile_file(path);
+  EXPECT_EQ(sums_.radiance, back.radiance);
+  EXPECT_EQ(sums_.seed, back.seed);
+}
+
+TEST_F(TileFile, ThatCannotBeWrittenIsAnErrorAndLeavesNothing) {
+  EXPECT_THROW(write_tile_file(folder_ / "absent" / "1-0.tile", sums_), ResourceError);
+  const fs::path full = folder_ / "1-1.tile";
+  fs::create_symlink("/dev/full", full);  // each write to it says that the disk is full
+  try {
+    write_tile_file(full, sums_);
+    FAIL() << "written to a full disk";
+  } catch (const ResourceError& error) {
+    EXPECT_NE(std::string(error.what()).find("1-1.tile: cannot write the tile, is the disk full?"), std::string::npos);
+  }
+  EXPECT_FALSE(fs::is_symlink(full));
 }
 
 TEST(FrameSocket, RefusesFramesThatAreTooLongAndEndsAtEndOfFile) {

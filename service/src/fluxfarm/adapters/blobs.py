@@ -20,9 +20,11 @@ import shutil
 import uuid
 from collections.abc import AsyncIterable, Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import suppress
 from pathlib import Path
 from typing import TypeVar
 
+from fluxfarm.domain.records import TileFile
 from fluxfarm.domain.scene import SceneBundle
 from fluxfarm.errors import DigestMismatch, DiskFull, TooLarge
 
@@ -110,19 +112,17 @@ class FileBlobStore:
 
     # ---- what jobs make ----
 
-    async def put_tiles(self, tiles: Sequence[tuple[str, bytes]]) -> list[str]:
-        """Store (job id, sums) in order, syncing many at once; returns their digests."""
+    async def adopt_tiles(self, tiles: Sequence[TileFile]) -> list[str | OSError]:
+        """Sync scratch files, many at once, and move them to their digests; returns these in order, or why a file
+        was dropped."""
 
-        def put() -> list[str]:
-            paths = list(self._sync.map(self._write_tile, tiles))
-            for folder in {final.parent for _, final in paths}:
-                for temporary, final in paths:
-                    if final.parent == folder:
-                        temporary.replace(final)
-                self._sync_path(folder)
-            return [final.name for _, final in paths]
+        def move() -> list[str | OSError]:
+            adopted = list(self._sync.map(self._adopt_tile, tiles))
+            jobs = {tile.job_id for tile, taken in zip(tiles, adopted, strict=True) if isinstance(taken, str)}
+            faults = {job_id: fault for job_id in jobs if (fault := self._sync_tiles(job_id)) is not None}
+            return [faults.get(tile.job_id, taken) for tile, taken in zip(tiles, adopted, strict=True)]
 
-        return await self._in_thread(put)
+        return await self._in_thread(move)
 
     def tile(self, job_id: str, sha256: str) -> Path:
         """Path of a stored tile."""
@@ -199,16 +199,34 @@ class FileBlobStore:
             shutil.rmtree(temporary)
         return final
 
-    def _write_tile(self, tile: tuple[str, bytes]) -> tuple[Path, Path]:
-        job_id, sums = tile
-        final = self.tile(job_id, hashlib.sha256(sums).hexdigest())
-        self._make_folder(final.parent)
-        temporary = final.with_name(f"{uuid.uuid4().hex}.tmp")
-        with temporary.open("wb", buffering=0) as file:
-            file.write(sums)
+    def _adopt_tile(self, tile: TileFile) -> str | OSError:
+        """Sync a scratch file and move it to its digest, or drop it; the folder is left to sync."""
+        try:
+            return self._move_tile(tile)
+        except OSError as error:
+            with suppress(OSError):
+                tile.path.unlink(missing_ok=True)
+            return error
+
+    def _move_tile(self, tile: TileFile) -> str:
+        with tile.path.open("rb", buffering=0) as file:
+            if (size := os.fstat(file.fileno()).st_size) != tile.size:
+                raise OSError(f"{tile.path}: {size} bytes, but the engine process wrote {tile.size}")
             if self._durable:
                 os.fsync(file.fileno())
-        return temporary, final
+            sha256 = hashlib.file_digest(file, "sha256").hexdigest()
+        final = self.tile(tile.job_id, sha256)
+        self._make_folder(final.parent)
+        tile.path.replace(final)
+        return sha256
+
+    def _sync_tiles(self, job_id: str) -> OSError | None:
+        """Sync the folder of a job's tiles; returns why it could not be done."""
+        try:
+            self._sync_path(self._job_folder(job_id, "tiles"))
+        except OSError as error:
+            return error
+        return None
 
     def _make_folder(self, folder: Path) -> None:
         """Make a folder (and its parent) such that it survives a crash of the machine."""

@@ -48,7 +48,8 @@ class PrepareLease(Lease):
 
 @dataclass(frozen=True, slots=True)
 class RenderLease(Lease):
-    """Take `samples` of every pixel of `rects`; `tiles` are the grid's indices of the same tiles."""
+    """Take `samples` of every pixel of `rects`; `tiles` are the grid's indices of the same tiles. The paths of the
+    scratch files that take their sums begin with `tiles_out`."""
 
     scene: SceneRef
     seed: int
@@ -56,21 +57,26 @@ class RenderLease(Lease):
     samples: SampleRange
     tiles: tuple[int, ...]
     rects: tuple[PixelRect, ...]
+    tiles_out: Path
+
+    def file(self, position: int) -> Path:
+        """Where the engine process writes the sums of the tile at `position`."""
+        return self.tiles_out.with_name(f"{self.tiles_out.name}-{position}.tile")
 
 
 @dataclass(frozen=True, slots=True)
 class Decision:
-    """What an engine process needs to decide an error goal after the round `round`."""
+    """What an engine process needs to decide an error goal after the round `round`; it audits `scene`."""
 
     rel_error: float
     round: int
     most_samples: int
+    scene: SceneRef
 
 
 @dataclass(frozen=True, slots=True)
 class MergeLease(Lease):
-    """Add finished tiles to the film and write the image, its preview and, where a path is given, the film. `scene` is
-    there where a decision is due: the engine audits it."""
+    """Add finished tiles to the film and write the image, its preview and, where a path is given, the film."""
 
     width: int
     height: int
@@ -83,7 +89,6 @@ class MergeLease(Lease):
     info: ImageInfo
     passes: int
     decision: Decision | None
-    scene: SceneRef | None
 
 
 @dataclass(frozen=True, slots=True)
@@ -126,11 +131,12 @@ class SamplesTaken:
 
 @dataclass(frozen=True, slots=True)
 class TileRendered:
-    """The tile at `position` of the lease. `seconds` on one thread."""
+    """The file of the tile at `position` of the lease is written and closed, but not yet synced; it has `size` bytes.
+    `seconds` on one thread."""
 
     lease: RenderLease
     position: int
-    sums: bytes
+    size: int
     seconds: float
     rays: int
     non_finite_samples: int

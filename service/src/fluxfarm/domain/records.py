@@ -1,6 +1,7 @@
 """Jobs and what belongs to them, as the ledger keeps them."""
 
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 from fluxfarm.domain.goal import Goal, Limits
@@ -123,6 +124,15 @@ class Unmerged:
     passes: tuple[OpenedPass, ...]
     film: str | None
     tiles: tuple[StoredTile, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class TileFile:
+    """A tile that an engine process wrote as a scratch file of a job, `size` bytes long as it says."""
+
+    job_id: str
+    path: Path
+    size: int
 
 
 @dataclass(frozen=True, slots=True)

@@ -125,7 +125,8 @@ class Dispatcher:
         opened = run.open_pass(time.monotonic())
         if opened is not None:
             self._ledger.open_pass(run.id, opened)
-        lease = run.take_lease(self.next_fence, worker.threads, len(self._pool.workers()), self._lease_s)
+        tiles_out = self._blobs.scratch(run.id, str(self.next_fence))
+        lease = run.take_lease(self.next_fence, worker.threads, len(self._pool.workers()), self._lease_s, tiles_out)
         if lease is not None:
             self.new_fence()
         return lease
@@ -136,7 +137,6 @@ class Dispatcher:
             return None
         fence, facts = self.new_fence(), run.facts
         run.single_lease = fence
-        decision = run.decision(ready)
         tiles = run.loose_tiles + tuple(sha256 for work in ready for sha256 in work.tiles())
         return MergeLease(
             fence=fence,
@@ -151,8 +151,7 @@ class Dispatcher:
             png_out=self._blobs.scratch(run.id, f"{fence}.png"),
             info=ImageInfo(run.id, run.request.bundle.digest(), facts.integrator, run.request.seed),
             passes=ready[-1].index + 1,
-            decision=decision,
-            scene=None if decision is None else run.scene,
+            decision=run.decision(ready),
         )
 
 

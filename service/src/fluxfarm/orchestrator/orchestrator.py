@@ -32,7 +32,7 @@ from fluxfarm.domain.leases import (
     WriteTileLease,
 )
 from fluxfarm.domain.progress import Progress
-from fluxfarm.domain.records import JobRecord, JobRequest, Revision, TileCommit
+from fluxfarm.domain.records import JobRecord, JobRequest, Revision, TileCommit, TileFile
 from fluxfarm.domain.scene import check_bundle
 from fluxfarm.domain.tiles import PixelRect, TileGrid
 from fluxfarm.errors import AssetsMissing, EngineTrouble, StaleLease
@@ -231,7 +231,8 @@ class Orchestrator:
         """Forget what a revoked lease brings, and the files that it wrote."""
         if isinstance(outcome, TileRendered):
             self.tallies.stale_tiles += 1
-        elif isinstance(outcome.lease, MergeLease):
+            self._background(self._blobs.drop([outcome.lease.file(outcome.position)]))
+        elif isinstance(outcome, Merged | LeaseFailed | LeaseLost):
             self._background(self._blobs.drop(_outputs(outcome.lease)))
 
     def _on_tile(self, run: JobRun, outcome: TileRendered) -> None:
@@ -254,7 +255,7 @@ class Orchestrator:
             rays=outcome.rays,
             non_finite_samples=outcome.non_finite_samples,
         )
-        self._committer.add(commit, outcome.sums)
+        self._committer.add(commit, TileFile(lease.job_id, lease.file(outcome.position), outcome.size))
 
     async def _on_batch(self, batch: Batch) -> None:
         for commit, taken in zip(batch.commits, batch.taken, strict=True):
@@ -264,14 +265,14 @@ class Orchestrator:
         self.tallies.tiles += sum(batch.taken)
         self.tallies.stale_tiles += len(batch.taken) - sum(batch.taken)
         self.tallies.commit_seconds.add(batch.seconds)
+        faults = {run.id: (run, f.reason) for f in batch.faults if (run := self._runs.of_lease(f.fence)) is not None}
         for fence in batch.ended:
             run = self._runs.of_lease(fence)
-            if run is not None:
-                run.end_lease(fence)
+            if run is not None and (undone := run.end_lease(fence)):
+                self._background(self._blobs.drop(undone))
+        for run, reason in faults.values():
+            await self._runs.count_failure(run, FailureKind.RESOURCE, reason)
         for job_id in {commit.job_id for commit in batch.commits}:
-            run = self._runs.get(job_id)
-            if batch.fault is not None and run is not None:
-                await self._runs.count_failure(run, FailureKind.RESOURCE, batch.fault)
             self.watch.notify(job_id)
 
     async def _on_prepared(self, run: JobRun, outcome: Prepared) -> None:
@@ -320,20 +321,27 @@ class Orchestrator:
         """A lease came to nothing; `kind` is None if that was not the job's fault."""
         if kind is FailureKind.SCENE:
             await self._runs.fail(run, message)
+        elif kind is None or not await self._runs.count_failure(run, kind, message):
+            await self._take_back(run, lease)
             return
-        if kind is not None and await self._runs.count_failure(run, kind, message):
-            return
-        if isinstance(lease, RenderLease):
+        await self._blobs.drop(_outputs(lease))
+
+    async def _take_back(self, run: JobRun, lease: Lease) -> None:
+        """Have the work of a lease done again."""
+        if isinstance(lease, RenderLease):  # the tiles that it did finish may still be on their way to the ledger
             self._committer.end(lease.fence)
             return
         await self._ledger.commit_tiles([], [lease.fence])
         run.end_lease(lease.fence)
         if isinstance(lease, PrepareLease):
             await self._runs.change(run, JobState.QUEUED)
-        elif isinstance(lease, MergeLease):
-            await self._blobs.drop(_outputs(lease))
+        await self._blobs.drop(_outputs(lease))
 
 
-def _outputs(lease: MergeLease) -> list[Path]:
-    """The files that a merge writes before they are adopted."""
-    return [path for path in (lease.film_out, lease.exr_out, lease.png_out) if path is not None]
+def _outputs(lease: Lease) -> list[Path]:
+    """The scratch files that an engine process may have written for the lease."""
+    if isinstance(lease, RenderLease):
+        return [lease.file(position) for position in range(len(lease.tiles))]
+    if isinstance(lease, MergeLease):
+        return [path for path in (lease.film_out, lease.exr_out, lease.png_out) if path is not None]
+    return []

@@ -6,6 +6,7 @@ be rebuilt from the ledger.
 
 from collections import deque
 from dataclasses import dataclass, field
+from pathlib import Path
 
 from fluxfarm.domain.goal import (
     UNBOUNDED_SPP,
@@ -144,8 +145,11 @@ class JobRun:
         self._spp = samples.end
         return opened
 
-    def take_lease(self, fence: int, threads: int, workers: int, target_s: float) -> RenderLease | None:
-        """Lease tiles of the oldest pass that has some, for about `target_s` seconds on `threads` threads."""
+    def take_lease(
+        self, fence: int, threads: int, workers: int, target_s: float, tiles_out: Path
+    ) -> RenderLease | None:
+        """Lease tiles of the oldest pass that has some, for about `target_s` seconds on `threads` threads. The paths of
+        their files will begin with `tiles_out`."""
         work = next((p for p in self._passes.values() if p.pending), None)
         if work is None or self.facts is None or self._grid is None:
             return None
@@ -161,6 +165,7 @@ class JobRun:
             samples=work.samples,
             tiles=tiles,
             rects=tuple(self._grid.rect(tile) for tile in tiles),
+            tiles_out=tiles_out,
         )
         self._leases[fence] = lease
         return lease
@@ -185,18 +190,20 @@ class JobRun:
         work.done[tile] = sha256
         self._samples += self._grid.rect(tile).area * work.samples.count
 
-    def end_lease(self, fence: int) -> None:
-        """The lease is over; its tiles that are not done become pending again, in front."""
+    def end_lease(self, fence: int) -> list[Path]:
+        """The lease is over; its tiles that are not done become pending again, in front. Returns their files."""
         if fence == self.single_lease:
             self.single_lease = None
         lease = self._leases.pop(fence, None)
         self._in_flight.pop(fence, None)
         work = None if lease is None else self._passes.get(lease.pass_index)
         if lease is None or work is None:
-            return
-        undone = [tile for tile in lease.tiles if tile in work.leased]
-        work.leased.difference_update(undone)
-        work.pending.extendleft(reversed(undone))
+            return []
+        undone = [position for position, tile in enumerate(lease.tiles) if tile in work.leased]
+        tiles = [lease.tiles[position] for position in undone]
+        work.leased.difference_update(tiles)
+        work.pending.extendleft(reversed(tiles))
+        return [lease.file(position) for position in undone]
 
     def end_merge(self, seconds: float, now: float) -> None:
         """An engine process has merged for `seconds`; the revision is still to be stored."""
@@ -240,7 +247,7 @@ class JobRun:
             return None
         assert self._goal.rel_error is not None and self._round is not None
         most = ceiling_spp(self._goal, self.request.limits) or UNBOUNDED_SPP
-        return Decision(self._goal.rel_error, self._round.number, most)
+        return Decision(self._goal.rel_error, self._round.number, most, self.scene)
 
     def wants_film(self, ready: list[PassRun]) -> bool:
         """Whether the merge of `ready` should write a film."""

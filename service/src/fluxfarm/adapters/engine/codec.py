@@ -7,6 +7,7 @@ from pathlib import Path
 
 from fluxfarm.adapters.protocol import engine_pb2 as pb
 from fluxfarm.domain.leases import (
+    Decision,
     FailureKind,
     ImageInfo,
     Lease,
@@ -28,7 +29,7 @@ from fluxfarm.domain.records import SceneFacts
 from fluxfarm.domain.schedule import Round, SampleRange
 from fluxfarm.domain.tiles import PixelRect
 
-PROTOCOL_VERSION = 3
+PROTOCOL_VERSION = 4
 MAX_FRAME_BYTES = 64 << 20
 LENGTH = struct.Struct("<I")
 
@@ -122,7 +123,7 @@ def outcome(work: Lease, reply: Reply) -> tuple[Outcome, bool]:
         return LeaseFailed(work, _KINDS.get(body.kind, FailureKind.INTERNAL), body.message), True
     if isinstance(work, RenderLease):
         if isinstance(body, pb.TileDone) and body.tile < len(work.tiles):
-            done = TileRendered(work, body.tile, body.sums, body.seconds, body.rays, body.non_finite_samples)
+            done = TileRendered(work, body.tile, body.bytes, body.seconds, body.rays, body.non_finite_samples)
             return done, False
         if isinstance(body, pb.Progress):
             return SamplesTaken(work, body.samples), False
@@ -165,6 +166,7 @@ def _render_tiles(work: RenderLease) -> pb.RenderTiles:
         seed=work.seed,
         samples=pb.SampleRange(begin=work.samples.begin, end=work.samples.end),
         tiles=[_rect(rect) for rect in work.rects],
+        tiles_out=str(work.tiles_out),
     )
 
 
@@ -179,19 +181,16 @@ def _merge_pass(work: MergeLease) -> pb.MergePass:
         exr_out=str(work.exr_out),
         png_out=str(work.png_out),
         info=_info(work.info),
-        error_goal=_error_goal(work),
+        error_goal=None if work.decision is None else _error_goal(work.decision),
     )
 
 
-def _error_goal(work: MergeLease) -> pb.ErrorGoal | None:
-    decision = work.decision
-    if decision is None or work.scene is None:
-        return None
+def _error_goal(decision: Decision) -> pb.ErrorGoal:
     return pb.ErrorGoal(
         rel_error=decision.rel_error,
         round=decision.round,
         most_samples=decision.most_samples,
-        scene_key=work.scene.key,
+        scene_key=decision.scene.key,
     )
 
 

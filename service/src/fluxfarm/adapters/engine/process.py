@@ -14,7 +14,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 from fluxfarm.adapters.engine import codec
-from fluxfarm.domain.leases import Lease, LeaseLost, MergeLease, Outcome, PrepareLease, RenderLease
+from fluxfarm.domain.leases import Lease, LeaseLost, MergeLease, Outcome, PrepareLease, RenderLease, SceneRef
 
 log = logging.getLogger(__name__)
 
@@ -76,7 +76,7 @@ class EngineProcess:
 
     def submit(self, lease: Lease) -> None:
         """Send a lease, preceded by its scene if the process was not last told to keep that one."""
-        scene = lease.scene if isinstance(lease, PrepareLease | RenderLease | MergeLease) else None
+        scene = _scene_of(lease)
         if scene is not None and not isinstance(lease, PrepareLease) and scene.key != self._loaded_key:
             request_id = next(self._ids)
             self._scene_requests[request_id] = lease
@@ -212,6 +212,15 @@ class EngineProcess:
         for position, lease in enumerate(lost):
             self._report(LeaseLost(lease, reason, blamed=blame and position == 0))
         return reason
+
+
+def _scene_of(lease: Lease) -> SceneRef | None:
+    """The scene that a process must keep to carry out the lease."""
+    if isinstance(lease, PrepareLease | RenderLease):
+        return lease.scene
+    if isinstance(lease, MergeLease) and lease.decision is not None:
+        return lease.decision.scene
+    return None
 
 
 async def _read_frame(reader: asyncio.StreamReader) -> bytes | None:
