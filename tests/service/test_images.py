@@ -74,7 +74,7 @@ def test_nothing_to_see_yet_is_a_problem(client: Client) -> None:
 
 
 def test_report_and_chart_tell_the_error_over_time(client: Client) -> None:
-    job_id = client.submit("fake: size 32 32\nfake: spp 32\nfake: tile_seconds 0.005\n", goal={"rel_error": 0.2})
+    job_id = client.submit("fake: size 32 32\nfake: spp 32\nfake: tile_seconds 0.1\n", goal={"rel_error": 0.2})
     client.succeed(job_id)
     report = client.http.get(f"/v1/jobs/{job_id}/report").json()
     assert report["samples"] == 32 * 32 * 32
