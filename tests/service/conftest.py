@@ -8,9 +8,14 @@ from typing import Any
 
 import pytest
 from farm_client import Client, fake_engine
+from hypothesis import settings as hypothesis_settings
 
 from fluxfarm.cli.embedded import EmbeddedService
 from fluxfarm.settings import Settings
+
+# How long an example takes says more of the machine than of the code.
+hypothesis_settings.register_profile("fluxfarm", deadline=None)
+hypothesis_settings.load_profile("fluxfarm")
 
 
 @pytest.fixture

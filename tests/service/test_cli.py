@@ -125,7 +125,7 @@ def test_interrupt_cancels_the_job_and_exits_with_130(
     environment: dict[str, str], start: Callable[..., Client], tmp_path: Path
 ) -> None:
     scene = tmp_path / "scene.xml"
-    scene.write_text("<!-- fake: spp 64 -->\n<!-- fake: tile_seconds 0.1 -->\n")
+    scene.write_text("<!-- fake: spp 4096 -->\n<!-- fake: tile_seconds 0.1 -->\n")
     client = start()
     process = subprocess.Popen(
         [*COMMAND, "render", str(scene), "-o", str(tmp_path / "out.exr"), "--server", client.url],
