@@ -58,7 +58,7 @@ class EngineProcess:
                     stderr=asyncio.subprocess.STDOUT,
                     start_new_session=True,
                 )
-            reader, self._writer = await asyncio.open_connection(sock=ours, limit=1 << 20)
+            reader, self._writer = await asyncio.open_connection(sock=ours)
         except BaseException:
             ours.close()
             raise
