@@ -30,6 +30,11 @@ def read_exr(path: Path) -> Layers:
         return {name: channel.pixels for name, channel in file.channels().items()}
 
 
+def relative_error(image: np.ndarray, reference: np.ndarray) -> float:
+    """Square root of relMSE, mean over pixels and channels of (I - R)^2 / (R^2 + 1e-2)."""
+    return float(np.sqrt(((image - reference) ** 2 / (reference**2 + 1e-2)).mean()))
+
+
 def beauty(layers: Layers) -> np.ndarray:
     """(height, width, 3) float64."""
     return np.stack([layers[c] for c in "RGB"], axis=-1).astype(np.float64)

@@ -9,13 +9,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from conftest import ROOT, beauty, render_alone
+from conftest import ROOT, beauty, relative_error, render_alone
 from farm import Farm
-
-
-def relative_error(image: np.ndarray, reference: np.ndarray) -> float:
-    """Square root of relMSE, mean over pixels and channels of (I - R)^2 / (R^2 + 1e-2)."""
-    return float(np.sqrt(((image - reference) ** 2 / (reference**2 + 1e-2)).mean()))
 
 
 def true_errors(tmp_path: Path, scene: str, side: int, goal: float, seeds: int, reference_spp: int) -> np.ndarray:

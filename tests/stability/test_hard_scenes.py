@@ -13,7 +13,7 @@ from hard_scenes import Node
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "render"))
 
-from conftest import beauty, render_alone
+from conftest import beauty, relative_error, render_alone
 
 SEEDS = 8
 
@@ -33,11 +33,6 @@ def run(scene: Node, folder: Path, *options: object) -> Job:
     said = json.loads(report.read_text())
     claimed = not any(warning.startswith("goal not reached") for warning in said["warnings"])
     return Job(image, claimed, said["error"]["unseen"], said["warnings"])
-
-
-def relative_error(image: np.ndarray, truth: np.ndarray) -> float:
-    """Square root of relMSE."""
-    return float(np.sqrt(((image - truth) ** 2 / (truth**2 + 1e-2)).mean()))
 
 
 @dataclass
