@@ -46,8 +46,9 @@ class Integrator {
   // Builds what the method needs for this scene. Called once, before any radiance().
   virtual void prepare(const Scene& scene) = 0;
 
-  // Estimates the radiance of each sample, in the order given; samples of one pixel stand together. The results of a pixel depend
-  // on the scene, the seed and the pixel's samples alone. Safe to call from many threads, each with its own queries.
+  // Estimates the radiance of each sample, in the order given: whole blocks of pixels one after another, in each the samples of
+  // one pixel together, equally many of all (integrators/pixel_blocks.h). The results of a block depend on the scene, the seed and
+  // the block's samples alone. Safe to call from many threads, each with its own queries.
   virtual void radiance(std::span<const CameraSample> samples, std::uint64_t seed, std::span<SampleResult> results,
                         RayQueries& queries) const = 0;
 };

@@ -4,6 +4,7 @@
 #include <array>
 
 #include "integrators/light_history.h"
+#include "integrators/pixel_blocks.h"
 #include "sampling/sampler.h"
 #include "support/error.h"
 
@@ -31,11 +32,14 @@ class PixelSums {
     for (int i = 0; i < kFeatures; ++i) sums_.features[i] += static_cast<double>(values[i]);
   }
 
-  void append_to(TileSums& tile) {
+  // Writes them into the place of pixel number `index` of the tile.
+  void write_to(TileSums& tile, std::size_t index) {
     sums_.layers[index_of(LightLayer::kIndirect)] = left_over();
-    for (std::uint32_t k = 0; k < tile.replicates(); ++k) append(sums_.radiance[k], tile.radiance);
-    append(sums_.features, tile.features);
-    for (const LightLayer layer : kept_) append(sums_.layers[index_of(layer)], tile.layer_sums);
+    float* radiance = tile.radiance.data() + index * tile.replicates() * 3;
+    for (std::uint32_t k = 0; k < tile.replicates(); ++k) radiance = write(sums_.radiance[k], radiance);
+    write(sums_.features, tile.features.data() + index * kFeatures);
+    float* layers = tile.layer_sums.data() + index * kept_.size() * 3;
+    for (const LightLayer layer : kept_) layers = write(sums_.layers[index_of(layer)], layers);
   }
 
  private:
@@ -50,8 +54,9 @@ class PixelSums {
   }
 
   template <std::size_t count>
-  static void append(const std::array<double, count>& sums, std::vector<float>& to) {
-    for (const double value : sums) to.push_back(static_cast<float>(value));
+  static float* write(const std::array<double, count>& sums, float* to) {
+    for (const double value : sums) *to++ = static_cast<float>(value);
+    return to;
   }
 
   // Of beauty, by the layers that are summed. Where that is nothing, the rounding of each sample's float sums may seem to leave
@@ -78,45 +83,55 @@ class PixelSums {
 
 TileSums render_tile(const Scene& scene, const Integrator& integrator, const TileTask& task, RayQueries& queries,
                      const std::atomic<bool>& cancelled, const std::function<void(std::uint64_t)>& progress) {
-  if (!PixelRect{0, 0, scene.film().width, scene.film().height}.contains(task.rect) || task.rect.empty() ||
-      task.samples.begin >= task.samples.end) {
+  const PixelRect frame{0, 0, scene.film().width, scene.film().height};
+  if (!frame.contains(task.rect) || task.rect.empty() || task.samples.begin >= task.samples.end) {
     throw SettingError("tile outside the frame or without samples");
   }
   TileSums sums{task.rect, task.samples, task.seed, {}, {}, 0, light_layers(scene.census()), {}};
-  sums.radiance.reserve(sums.radiance_size());
-  sums.features.reserve(sums.features_size());
-  sums.layer_sums.reserve(sums.layer_sums_size());
+  sums.radiance.resize(sums.radiance_size());
+  sums.features.resize(sums.features_size());
+  sums.layer_sums.resize(sums.layer_sums_size());
 
+  const std::size_t per_pixel = task.samples.size();
   std::vector<CameraSample> batch;
-  std::vector<SampleResult> results(std::max<std::size_t>(kBatch, task.samples.size()));
-  batch.reserve(kBatch);
+  batch.reserve(std::max(kBatch, per_pixel));
+  std::vector<SampleResult> results(batch.capacity());
   PixelSums pixel(sums.layers);
-  const std::uint32_t last = task.samples.end - 1;
+  // Sums what came back for the pixel whose samples begin at `first`.
+  const auto sum_up = [&](std::size_t first) {
+    const CameraSample& at = batch[first];
+    pixel.clear();
+    for (std::size_t k = 0; k < per_pixel; ++k) {
+      SampleResult& result = results[first + k];
+      if (!is_finite(result.radiance)) {
+        result.radiance = {};
+        result.layers = {};
+        ++sums.non_finite_samples;
+      }
+      pixel.add(result, static_cast<std::uint32_t>(k % kFilmReplicates));
+    }
+    pixel.write_to(sums, static_cast<std::size_t>(at.y - task.rect.y) * task.rect.width + (at.x - task.rect.x));
+  };
   const auto flush = [&] {
     if (cancelled.load(std::memory_order_relaxed)) throw CancelledError();
     integrator.radiance(batch, task.seed, results, queries);
-    for (std::size_t i = 0; i < batch.size(); ++i) {
-      if (!is_finite(results[i].radiance)) {
-        results[i].radiance = {};
-        results[i].layers = {};
-        ++sums.non_finite_samples;
-      }
-      pixel.add(results[i], (batch[i].index - task.samples.begin) % kFilmReplicates);
-      if (batch[i].index == last) {
-        pixel.append_to(sums);
-        pixel.clear();
-      }
+    std::uint64_t pixels = 0;
+    for (std::size_t first = 0; first < batch.size(); first += per_pixel) {
+      if (!task.rect.contains({batch[first].x, batch[first].y, 1, 1})) continue;
+      sum_up(first);
+      ++pixels;
     }
-    if (progress) progress(batch.size());
+    if (progress) progress(pixels * per_pixel);
     batch.clear();
   };
-  for (int y = task.rect.y; y < task.rect.y + task.rect.height; ++y) {
-    for (int x = task.rect.x; x < task.rect.x + task.rect.width; ++x) {
-      // Whole pixels only: how a method groups a pixel's samples must not depend on the tile.
-      if (batch.size() + task.samples.size() > kBatch && !batch.empty()) flush();
-      for (std::uint32_t index = task.samples.begin; index < task.samples.end; ++index) batch.push_back({x, y, index});
+  for_each_block(task.rect, frame, block_size(per_pixel), [&](PixelRect block) {
+    if (batch.size() + per_pixel * block.pixels() > kBatch && !batch.empty()) flush();
+    for (int y = block.y; y < block.y + block.height; ++y) {
+      for (int x = block.x; x < block.x + block.width; ++x) {
+        for (std::uint32_t index = task.samples.begin; index < task.samples.end; ++index) batch.push_back({x, y, index});
+      }
     }
-  }
+  });
   if (!batch.empty()) flush();
   return sums;
 }

@@ -107,6 +107,26 @@ TEST(TileRunner, EndsWithTheBatchInWhichItWasCancelled) {
   EXPECT_LE(largest, 512u);
 }
 
+TEST(TileRunner, ATileAtAnOddPlaceIsThatPartOfTheFrame) {
+  const Scene scene(small_scene(), 1);
+  const auto integrator = make_integrator("path", scene);
+  RayQueries queries(scene.accelerator());
+  const std::atomic<bool> never{false};
+  const PixelRect frame{0, 0, 33, 21}, tile{3, 4, 7, 5};
+  for (const SampleRange samples : {SampleRange{0, 1}, {2, 4}, {16, 32}}) {
+    const TileSums whole = render_tile(scene, *integrator, {frame, samples, 9}, queries, never);
+    const TileSums part = render_tile(scene, *integrator, {tile, samples, 9}, queries, never);
+    const std::size_t values = part.replicates() * 3;
+    for (int y = 0; y < tile.height; ++y) {
+      for (int x = 0; x < tile.width; ++x) {
+        const std::size_t here = (static_cast<std::size_t>(y) * tile.width + x) * values;
+        const std::size_t there = (static_cast<std::size_t>(tile.y + y) * frame.width + tile.x + x) * values;
+        for (std::size_t i = 0; i < values; ++i) EXPECT_EQ(part.radiance[here + i], whole.radiance[there + i]);
+      }
+    }
+  }
+}
+
 TEST(TileRunner, TilesCoverTheImageExactlyOnce) {
   std::vector<int> covered(33 * 21);
   for (const PixelRect& tile : make_tiles({0, 0, 33, 21}, 8)) {

@@ -2,7 +2,7 @@
 
 #include <array>
 
-#include "integrators/path/pixel_groups.h"
+#include "integrators/pixel_blocks.h"
 
 namespace fluxfarm {
 

@@ -8,7 +8,7 @@
 #include "integrators/path/camera_rays.h"
 #include "integrators/path/multiple_importance.h"
 #include "integrators/path/path_vertex.h"
-#include "integrators/path/pixel_groups.h"
+#include "integrators/pixel_blocks.h"
 #include "integrators/roulette.h"
 
 namespace fluxfarm {
@@ -36,7 +36,7 @@ struct PendingLight {
   SampleResult* result = nullptr;
 };
 
-// The paths of one pixel, advanced bounce by bounce.
+// The paths of a block of pixels, advanced bounce by bounce.
 class PathGroup {
  public:
   PathGroup(const Scene& scene, RayQueries& queries)
@@ -195,8 +195,8 @@ class PathGroup {
 void PathIntegrator::radiance(std::span<const CameraSample> samples, std::uint64_t seed, std::span<SampleResult> results,
                               RayQueries& queries) const {
   PathGroup group(*scene_, queries);
-  for_each_pixel_group(samples, results,
-                       [&](std::span<const CameraSample> pixel, std::span<SampleResult> out) { group.trace(pixel, seed, out); });
+  for_each_group(samples, results,
+                 [&](std::span<const CameraSample> block, std::span<SampleResult> out) { group.trace(block, seed, out); });
 }
 
 }  // namespace fluxfarm

@@ -8,8 +8,8 @@
 // A path is an absorbing Markov chain: at each bounce it survives with a probability that follows its throughput, and the
 // survivors are weighted up by it, so the expectation is unchanged.
 //
-// The samples of one pixel advance together, bounce by bounce, so that their rays can be traced in packets; which rays share a
-// packet then depends on the pixel and the pass alone, and so does every bit of the result.
+// The samples of a block of pixels advance together, bounce by bounce, so that their rays can be traced in packets; which rays
+// share a packet then depends on the block and the pass alone, and so does every bit of the result.
 #pragma once
 
 #include "integrators/integrator.h"

@@ -4,7 +4,7 @@
 #include <array>
 
 #include "accel/ray_queries.h"
-#include "integrators/path/pixel_groups.h"
+#include "integrators/pixel_blocks.h"
 #include "scene/scene.h"
 
 namespace fluxfarm {

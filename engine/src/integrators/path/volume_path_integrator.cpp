@@ -7,8 +7,8 @@
 #include "integrators/path/camera_rays.h"
 #include "integrators/path/multiple_importance.h"
 #include "integrators/path/path_vertex.h"
-#include "integrators/path/pixel_groups.h"
 #include "integrators/path/shadow_rays.h"
+#include "integrators/pixel_blocks.h"
 #include "integrators/roulette.h"
 #include "media/channel_mis.h"
 #include "sampling/sampler.h"
@@ -41,7 +41,7 @@ struct VolumePath {
   SampleResult* result = nullptr;
 };
 
-// The paths of one pixel, advanced step by step.
+// The paths of a block of pixels, advanced step by step.
 class VolumePathGroup {
  public:
   VolumePathGroup(const Scene& scene, RayQueries& queries)
@@ -266,8 +266,8 @@ class VolumePathGroup {
 void VolumePathIntegrator::radiance(std::span<const CameraSample> samples, std::uint64_t seed, std::span<SampleResult> results,
                                     RayQueries& queries) const {
   VolumePathGroup group(*scene_, queries);
-  for_each_pixel_group(samples, results,
-                       [&](std::span<const CameraSample> pixel, std::span<SampleResult> out) { group.trace(pixel, seed, out); });
+  for_each_group(samples, results,
+                 [&](std::span<const CameraSample> block, std::span<SampleResult> out) { group.trace(block, seed, out); });
 }
 
 }  // namespace fluxfarm
