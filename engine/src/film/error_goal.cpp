@@ -13,9 +13,10 @@
 namespace fluxfarm {
 namespace {
 
-// A choice: with one, tiles would end at the goal and leave no room for the confidence; smaller ones spend samples where they
-// lower the picture's error little.
-constexpr double kOpenAbove = 0.5;
+// Tiles whose samples gain so little of what the best ones gain wait (a choice: two doublings): how much they should take depends
+// on variances of the others that more samples may correct.
+constexpr double kFarBehind = 1.0 / 16;
+
 // Side of the cells over which the carriers of the error are pooled, in pixels.
 constexpr int kCell = 4;
 
@@ -39,6 +40,10 @@ struct TileError {
   double own() const { return cells.estimate(); }
   double pixels() const { return cells.pixels(); }
   double deciding() const { return std::max(own(), pooled); }
+  // Share of relMSE that one sample of each pixel would leave.
+  double variance() const { return deciding() * samples; }
+  // How much share one more sample takes off, by the derivative.
+  double gain() const { return deciding() / samples; }
 };
 
 TileError measure(const Film& film, PixelRect rect) {
@@ -84,18 +89,43 @@ void pool(std::vector<TileError>& tiles, int columns) {
   }
 }
 
-std::optional<Round> choose_round(const std::vector<TileError>& tiles, const ErrorGoal& goal) {
-  double worst = 0;
+// The smallest gain at which tiles take more samples so that the goal's mean share is left with the fewest samples in all. With
+// variances v and samples n the sum of v / n is least for a given sum of n where v / n^2, the gain, is the same in all tiles;
+// tiles that have more samples than that keep them.                                                          [Neyman34]
+double gain_to_keep(const std::vector<TileError>& tiles, const ErrorGoal& goal) {
+  double pixels = 0, deviations = 0;
   for (const TileError& tile : tiles) {
-    if (tile.samples < goal.most_samples) worst = std::max(worst, tile.deciding());
+    pixels += tile.pixels();
+    deviations += tile.pixels() * std::sqrt(tile.variance());
   }
-  if (worst == 0) return std::nullopt;
-  // Where all tiles are below and the picture is not done yet, the worst ones go on.
-  const double above = std::min(kOpenAbove * goal.rel_error * goal.rel_error, 0.5 * worst);
+  // Samples per deviation, n / sqrt(v), by bisection from above: without the samples that are there already it would be `most`.
+  const double share = goal.rel_error * goal.rel_error * pixels;
+  double fewest = 0, most = deviations / share;
+  for (int i = 0; i < 20; ++i) {
+    const double middle = 0.5 * (fewest + most);
+    double left = 0;
+    for (const TileError& tile : tiles) {
+      const double variance = tile.variance();
+      if (variance > 0) left += tile.pixels() * variance / std::max<double>(tile.samples, middle * std::sqrt(variance));
+    }
+    (left > share ? fewest : most) = middle;
+  }
+  return 1 / (most * most);
+}
+
+std::optional<Round> choose_round(const std::vector<TileError>& tiles, const ErrorGoal& goal) {
+  double best = 0;
+  for (const TileError& tile : tiles) {
+    if (tile.samples < goal.most_samples) best = std::max(best, tile.gain());
+  }
+  if (best == 0) return std::nullopt;
+  // Samples double, so a tile goes on while the middle of its doubling, on the scale of logarithms, is not too much. Where none
+  // is left and the picture is not done yet, as its bound lies above its error, the best ones go on.
+  const double above = std::clamp(2 * gain_to_keep(tiles, goal), kFarBehind * best, 0.5 * best);
   Round round;
   std::uint32_t fewest = goal.most_samples;
   for (std::uint32_t i = 0; i < tiles.size(); ++i) {
-    if (tiles[i].deciding() <= above || tiles[i].samples > fewest || tiles[i].samples >= goal.most_samples) continue;
+    if (tiles[i].gain() <= above || tiles[i].samples > fewest || tiles[i].samples >= goal.most_samples) continue;
     if (tiles[i].samples < fewest) round.tiles.clear();
     fewest = tiles[i].samples;
     round.tiles.push_back(i);

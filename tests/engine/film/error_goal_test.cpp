@@ -157,6 +157,24 @@ TEST(ErrorGoal, OneSampleClaimsNothing) {
   EXPECT_TRUE(std::isinf(look.bound));
 }
 
+// Four times the standard deviation takes four times the samples. Equal errors would take sixteen times, equal samples once.
+TEST(ErrorGoal, SamplesFollowTheStandardDeviation) {
+  NoisyPicture picture([](std::uint32_t tile) { return tile % 2 == 0 ? 2.4 : 0.6; });
+  const ErrorGoal goal{0.05};
+  std::optional<Round> round = first_round(goal, kCrop);
+  for (int number = 1; round; ++number) {
+    picture.take(*round);
+    round = look_at(picture.film, goal, number).next;
+  }
+  const auto samples = [&](std::uint32_t tile) {
+    const PixelRect rect = make_tiles(kCrop, kErrorTile)[tile];
+    return picture.film.samples(rect.x, rect.y);
+  };
+  EXPECT_LE(picture.true_error(), goal.rel_error);
+  for (std::uint32_t tile = 0; tile < kColumns * kRows; tile += 2)
+    EXPECT_EQ(samples(tile), 4 * samples(tile + 1)) << "tile " << tile;
+}
+
 struct Outcome {
   double within = 0, above_half = 0;  // shares of the pictures
   double samples = 0;                 // mean, of those that even sampling takes
