@@ -46,14 +46,13 @@ def ray_rates(scene: Path) -> dict[str, Any]:
     return dict(json.loads(subprocess.run(command, check=True, capture_output=True, text=True).stdout))
 
 
-def render(scene: Path, out: Path, spp: int, seed: int, *more: str) -> tuple[np.ndarray, float]:
+def render(scene: Path, out: Path, goal: tuple[str, float], seed: int, *more: str) -> tuple[np.ndarray, float]:
     """(height, width, 3) float64 and the seconds of rendering alone. more: further options of the engine's command."""
     image, report = out.parent / "bench.exr", out.parent / "bench-report.json"
     options = [
         "--size",
         f"{peers.SIDE}x{peers.SIDE}",
-        "--spp",
-        str(spp),
+        *map(str, goal),
         "--seed",
         str(seed),
         "--threads",
@@ -80,9 +79,11 @@ def main() -> None:
             f"{rates['embree_rays_per_second'] / 1e6:.2f} M rays/s, ratio {rates['ratio']:.3f}, "
             f"{rates['path_samples_per_second'] / 1e6:.2f} M samples/s"
         )
-    results["many-lights"] = many_lights.compare(out.parent, lambda scene, spp, seed: render(scene, out, spp, seed))
+    results["many-lights"] = many_lights.compare(
+        out.parent, lambda scene, spp, seed: render(scene, out, ("--spp", spp), seed)
+    )
     depth = f"max_depth={peers.DEPTH}"
-    compared = peers.compare(out.parent, lambda scene, spp, seed: render(scene, out, spp, seed, "-D", depth))
+    compared = peers.compare(out.parent, lambda scene, goal, seed: render(scene, out, goal, seed, "-D", depth))
     results["peers"] = {name: [asdict(row) for row in rows] for name, rows in compared.items()}
     out.write_text(json.dumps(results, indent=2) + "\n")
     print(out)
