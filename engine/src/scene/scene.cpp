@@ -118,9 +118,9 @@ Scene::Scene(const SceneDescription& description, int threads)
 
   const Bounds bounds = bounds_of(surfaces_);
   if (!bounds.empty()) center_ = bounds.center();
-  const float radius = bounds.radius();
+  radius_ = bounds.radius();
   for (const EmitterDescription& emitter : description.emitters) {
-    if (auto made = make_emitter(emitter, radius)) free_emitters_.push_back(std::move(made));
+    if (auto made = make_emitter(emitter, radius_)) free_emitters_.push_back(std::move(made));
     if (const auto* constant = std::get_if<ConstantEmitterDescription>(&emitter)) {
       environment_ = environment_.value_or(Rgb{}) + constant->radiance;
     }

@@ -98,6 +98,8 @@ class Scene {
   const std::vector<const Emitter*>& emitter_list() const { return emitter_list_; }
   // The middle of the box around all surfaces.
   Vec3f center() const { return center_; }
+  // Of a sphere around center() that holds them, m.
+  float radius() const { return radius_; }
   const EnvironmentMap& environment_map() const { return environment_map_; }
   const Camera& camera() const { return camera_; }
   const FilmDescription& film() const { return film_; }
@@ -135,6 +137,7 @@ class Scene {
   EnvironmentMap environment_map_;
   std::vector<const Emitter*> emitter_list_;
   Vec3f center_;
+  float radius_ = 0;
   std::unique_ptr<RayAccelerator> accelerator_;
   Census census_;
   std::vector<std::string> warnings_;

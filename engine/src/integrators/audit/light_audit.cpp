@@ -7,8 +7,8 @@
 
 #include "film/error_goal.h"
 #include "film/tile_grid.h"
-#include "integrators/audit/key_random.h"
 #include "integrators/audit/light_particle.h"
+#include "integrators/key_random.h"
 #include "integrators/path/path_vertex.h"
 #include "support/error.h"
 #include "support/parallel.h"

@@ -4,38 +4,21 @@
 #include <cmath>
 #include <limits>
 
-#include "integrators/audit/key_random.h"
+#include "integrators/key_random.h"
 #include "integrators/path/path_vertex.h"
 #include "integrators/roulette.h"
 
 namespace fluxfarm {
 namespace {
 
-DiscreteDistribution choice_of(const std::vector<const Emitter*>& emitters) {
-  std::vector<double> weights;
+// Half evenly, half in proportion to power.
+std::vector<double> shares_of(const Scene& scene) {
+  std::vector<double> weights = ParticleSource::powers(scene);
+  weights.resize(scene.emitter_list().size());  // without the constant environment
   double total = 0;
-  for (const Emitter* emitter : emitters) {
-    const auto power = static_cast<double>(mean(emitter->power()));
-    total += weights.emplace_back(std::isfinite(power) ? power : 0.0);  // what is beyond all numbers cannot be followed
-  }
+  for (const double weight : weights) total += weight;
   for (double& weight : weights) weight = weight > 0 ? 0.5 * weight / total + 0.5 / static_cast<double>(weights.size()) : 0.0;
-  return DiscreteDistribution(weights);
-}
-
-// What is left of flux that arrived from `from` (world) and was scattered as `s` says, towards `towards` (world). A BSDF describes
-// the scattering of radiance, which comes to a path from where the flux goes: its directions are exchanged, and with them the
-// scaling by refraction. Around a shading normal the cosines that the two leave out differ.              [Veach97, section 5.3.2]
-//
-// A delta lobe has no value to ask for. It is taken to scatter both ways alike, up to the scaling by refraction, which holds but
-// for those under a normal map: they miss the ratio of the cosines to the shading normal.
-Rgb scattered_flux(const PathVertex& vertex, Vec3f from, Vec3f towards, const BsdfSample& s) {
-  const float arriving = std::fabs(dot(from, vertex.point.geometric_normal));
-  const float leaving = std::fabs(dot(towards, vertex.point.geometric_normal));
-  if (!(arriving > 0)) return {};
-  const float cosines = std::fabs(vertex.wo.z) * leaving / arriving;
-  if (!s.delta) return vertex.bsdf->value(s.wi, vertex.wo).f * (cosines / s.pdf);
-  const float cos_leaving = std::fabs(s.wi.z);
-  return cos_leaving > 0 ? s.weight * (s.eta * s.eta * cosines / cos_leaving) : Rgb{};
+  return weights;
 }
 
 }  // namespace
@@ -53,17 +36,16 @@ ParticleTracer::ParticleTracer(const Scene& scene, std::uint64_t seed, std::uint
       seed_(seed),
       particles_(particles),
       max_depth_(scene.method().max_depth < 0 ? std::numeric_limits<int>::max() : scene.method().max_depth),
-      choice_(choice_of(scene.emitter_list())) {}
+      source_(scene, shares_of(scene)) {}
 
 void ParticleTracer::trace(std::uint32_t index, RayQueries& queries, ParticleTrace& trace) const {
   trace.clear();
   KeyRandom random(seed_, KeyRandom::kParticle, index);
   const double place = (index + static_cast<double>(random.next_1d())) / particles_;
-  const DiscreteDistribution::Choice choice = choice_.sample(std::min(static_cast<float>(place), 0x1.fffffep-1f));
   const Vec2f u_point = random.next_2d(), u_direction = random.next_2d();
-  const auto emission = scene_.emitter_list()[choice.index]->emit(u_point, u_direction, scene_.center());
+  const auto emission = source_.emit(place, u_point, u_direction);
   if (!emission) return;
-  Particle particle{emission->flux / choice.probability, emission->ray, emission->delta, false, random};
+  Particle particle{emission->flux, emission->ray, emission->delta, false, random};
   const float begun_with = max_component(particle.flux);
   if (!(begun_with > 0) || !is_finite(particle.flux)) return;
 
@@ -81,18 +63,16 @@ void ParticleTracer::trace(std::uint32_t index, RayQueries& queries, ParticleTra
       connect(vertex, particle, queries, trace);
     }
 
-    const float u_lobe = particle.random.next_1d();
-    const std::optional<BsdfSample> scatter = vertex.bsdf->sample(vertex.wo, u_lobe, particle.random.next_2d());
+    const std::optional<ScatteredFlux> scatter = scatter_flux(vertex, -particle.ray.direction, particle.random);
     if (!scatter) return;
     // Next-event estimation alone finds a delta light, and never over a delta lobe.
     if (bounces == 1 && particle.delta_emitter && scatter->delta) particle.unreachable = true;
-    const Vec3f direction = vertex.frame.to_world(scatter->wi);
-    particle.flux *= scattered_flux(vertex, -particle.ray.direction, direction, *scatter);
+    particle.flux *= scatter->share;
     if (!is_finite(particle.flux)) return;
     const float survival = std::min(max_component(particle.flux) / begun_with, kMaxSurvival);
     if (!(particle.random.next_1d() < survival)) return;
     particle.flux *= 1 / survival;
-    particle.ray = {vertex.origin_towards(direction), direction};
+    particle.ray = {vertex.origin_towards(scatter->direction), scatter->direction};
   }
 }
 

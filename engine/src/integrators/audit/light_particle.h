@@ -1,14 +1,12 @@
 // One particle of light, followed from its emitter through the scene: at each surface with a continuous lobe it is connected to the
 // camera, which makes it an estimate of the picture from the other side than path tracing.
-//
-// [Veach97] E. Veach, "Robust Monte Carlo Methods for Light Transport Simulation", PhD thesis, Stanford 1997.
 #pragma once
 
 #include <cstdint>
 #include <vector>
 
 #include "accel/ray_queries.h"
-#include "sampling/discrete_distribution.h"
+#include "integrators/light_flux.h"
 #include "scene/scene.h"
 
 namespace fluxfarm {
@@ -51,7 +49,7 @@ class ParticleTracer {
   const std::uint64_t seed_;
   const std::uint32_t particles_;
   const int max_depth_;
-  DiscreteDistribution choice_;
+  ParticleSource source_;
 };
 
 }  // namespace fluxfarm

@@ -1,6 +1,7 @@
-// Independent random numbers of one particle or one probe of the audit, keyed by (seed, kind, index).
+// Independent random numbers of one particle of light, one photon or one probe of the audit, keyed by (seed, kind, index).
 //
-// Not quasi-Monte Carlo points: the audit's error comes from the squares of its summands, which holds for independent ones.
+// Not quasi-Monte Carlo points: the audit's error comes from the squares of its summands, which holds for independent ones, and
+// the ledger of photons is tested in the same way.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +13,7 @@ namespace fluxfarm {
 
 class KeyRandom {
  public:
-  enum Kind : std::uint64_t { kParticle = 0x6c69676874, kProbe = 0x70726f6265 };
+  enum Kind : std::uint64_t { kParticle = 0x6c69676874, kProbe = 0x70726f6265, kPhoton = 0x70686f746f6e };
 
   KeyRandom(std::uint64_t seed, Kind kind, std::uint64_t index) : key_(hash_words(seed, static_cast<std::uint64_t>(kind), index)) {}
 
