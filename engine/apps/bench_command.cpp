@@ -1,15 +1,16 @@
-// fluxfarm-engine bench path: how much of bare Embree's ray rate path tracing reaches, on the rays that it really traces.
+// fluxfarm-engine bench: path here, photons in bench_photons.h.
 //
-// The rays of tiles spread over the picture are recorded; then rounds of path tracing those tiles and rounds of tracing their
-// recorded rays alone take turns, and the medians are compared, so that a machine that slows down for a while slows down both.
-#include <algorithm>
+// bench path: how much of bare Embree's ray rate path tracing reaches, on the rays that it really traces. The rays of tiles spread
+// over the picture are recorded; then rounds of path tracing those tiles and rounds of tracing their recorded rays alone take
+// turns, and the medians are compared, so that a machine that slows down for a while slows down both.
 #include <atomic>
-#include <chrono>
 #include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <numeric>
 
+#include "bench_photons.h"
+#include "bench_tools.h"
 #include "commands.h"
 #include "film/tile_grid.h"
 #include "integrators/integrator.h"
@@ -32,15 +33,6 @@ constexpr int kRounds = 9;
 constexpr std::uint32_t kBenchSamples = 64;       // a pass of the usual size
 constexpr int kBenchTile = 8;                     // pixels; small, so that those of one thread lie all over the picture
 constexpr std::size_t kRecordedRays = 1'000'000;  // a thread, at least
-
-using Clock = std::chrono::steady_clock;
-
-double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
-
-double median(std::vector<double> values) {
-  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2), values.end());
-  return values[values.size() / 2];
-}
 
 // The same tiles and samples in every round: each thread has its own.
 class PathBench {
@@ -105,7 +97,7 @@ class PathBench {
 
   // Returns the seconds until all threads are done.
   double on_every_thread(const std::function<void(Share&)>& work) {
-    const Clock::time_point start = Clock::now();
+    const BenchClock::time_point start = BenchClock::now();
     parallel_for(shares_.size(), static_cast<int>(shares_.size()), [&](std::size_t index, int) {
       prepare_render_thread();
       work(shares_[index]);
@@ -119,10 +111,7 @@ class PathBench {
   std::atomic<bool> never_{false};
 };
 
-void bench(const BenchOptions& options) {
-  if (options.what != "path") throw SettingError("bench " + options.what + ", expected path");
-  const int threads = resolve_threads(options.threads);
-  const Scene scene(options.scene.read(), threads);
+nlohmann::json bench_path(const Scene& scene, int threads) {
   const std::unique_ptr<Integrator> integrator = make_integrator("path", scene);
   PathBench path(scene, *integrator, threads);
   std::vector<double> path_rates, sample_rates, embree_rates, ratios;
@@ -133,30 +122,32 @@ void bench(const BenchOptions& options) {
     embree_rates.push_back(path.rays() / embree_seconds);
     ratios.push_back(embree_seconds / path_seconds);
   }
-  const nlohmann::json result = {
-      {"scene", options.scene.scene.string()},          {"threads", threads},
-      {"triangles", scene.census().triangles},          {"rounds", kRounds},
-      {"path_rays_per_second", median(path_rates)},     {"path_samples_per_second", median(sample_rates)},
-      {"embree_rays_per_second", median(embree_rates)}, {"ratio", median(ratios)}};
+  return {{"triangles", scene.census().triangles},          {"rounds", kRounds},
+          {"path_rays_per_second", median(path_rates)},     {"path_samples_per_second", median(sample_rates)},
+          {"embree_rays_per_second", median(embree_rates)}, {"ratio", median(ratios)}};
+}
+
+void bench(const BenchOptions& options) {
+  if (options.what != "path" && options.what != "photons")
+    throw SettingError("bench " + options.what + ", expected path or photons");
+  const int threads = resolve_threads(options.threads);
+  const Scene scene(options.scene.read(), threads);
+  nlohmann::ordered_json result = {{"scene", options.scene.scene.string()}, {"threads", threads}};
+  result.update(options.what == "path" ? bench_path(scene, threads) : bench_photons(scene, threads));
   if (options.json) {
     std::printf("%s\n", result.dump(2).c_str());
     return;
   }
-  std::printf("%s, %d threads, %zu triangles, medians of %d rounds\n", options.scene.scene.c_str(), threads,
-              scene.census().triangles, kRounds);
-  std::printf("path_rays_per_second    %.3f M\n", median(path_rates) / 1e6);
-  std::printf("path_samples_per_second %.3f M\n", median(sample_rates) / 1e6);
-  std::printf("embree_rays_per_second  %.3f M\n", median(embree_rates) / 1e6);
-  std::printf("ratio                   %.3f\n", median(ratios));
+  for (const auto& [name, value] : result.items()) std::printf("%-40s %s\n", name.c_str(), value.dump().c_str());
 }
 
 }  // namespace
 
 void add_bench_command(CLI::App& app) {
-  CLI::App* command = app.add_subcommand("bench", "Measure the engine: bench [path] SCENE");
+  CLI::App* command = app.add_subcommand("bench", "Measure the engine: bench [path|photons] SCENE");
   const auto options = std::make_shared<BenchOptions>();
   const auto words = std::make_shared<std::vector<std::string>>();
-  command->add_option("WHAT_AND_SCENE", *words, "What to measure (path, the default) and the scene file")
+  command->add_option("WHAT_AND_SCENE", *words, "What to measure (path, the default, or photons) and the scene file")
       ->required()
       ->expected(1, 2);
   command->add_option("--size", options->scene.size, "Film size WxH in pixels");

@@ -1,0 +1,38 @@
+// The books of the light that photons carry: where all that was emitted has gone.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+
+namespace fluxfarm {
+
+// All in W, mean over R, G and B. Emitted = absorbed + escaped + cut + ended - regained, whatever the random numbers; in the mean
+// roulette gives to the survivors what it takes from the others, so that ended = regained.
+struct FluxLedger {
+  static constexpr std::size_t kBounces = 32;
+
+  double emitted = 0;
+  double absorbed = 0;  // by surfaces: what arrived less what the BSDF's own sampling sent on
+  double escaped = 0;   // out of the scene
+  double cut = 0;       // by the limit of bounces, or because what comes is not to be stored
+  double ended = 0;     // by roulette
+  double regained = 0;  // by survivors of roulette
+  // What arrives at the first, second ... surface on the way; the last counts all that come after it, too.
+  std::array<double, kBounces> arrived{};
+
+  // `bounce` counts from 0.
+  void arrive(std::size_t bounce, double flux) { arrived[std::min(bounce, kBounces - 1)] += flux; }
+
+  void add(const FluxLedger& other) {
+    emitted += other.emitted;
+    absorbed += other.absorbed;
+    escaped += other.escaped;
+    cut += other.cut;
+    ended += other.ended;
+    regained += other.regained;
+    for (std::size_t i = 0; i < kBounces; ++i) arrived[i] += other.arrived[i];
+  }
+};
+
+}  // namespace fluxfarm

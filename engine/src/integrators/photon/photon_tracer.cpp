@@ -1,0 +1,146 @@
+#include "integrators/photon/photon_tracer.h"
+
+#include <algorithm>
+#include <array>
+#include <numeric>
+#include <string>
+
+#include "integrators/key_random.h"
+#include "integrators/path/path_vertex.h"
+#include "integrators/roulette.h"
+#include "support/error.h"
+
+namespace fluxfarm {
+namespace {
+
+const std::vector<double>& checked(const Scene& scene, const PhotonSettings& settings, const std::vector<double>& weights) {
+  if (settings.photons == 0) throw SettingError("photons = 0, expected at least 1");
+  if (scene.census().media > 0) throw SettingError("the scene has participating media, which photon maps do not model");
+  if (!(std::accumulate(weights.begin(), weights.end(), 0.0) > 0)) {
+    throw SettingError("nothing in the scene emits light, expected an emitter to shoot photons from");
+  }
+  bool stores = false;
+  for (std::uint32_t shape = 0; shape < scene.census().shapes; ++shape) stores |= scene.surface(shape).has_continuous_lobe;
+  if (!stores)
+    throw SettingError("all surfaces of the scene are smooth mirrors or glass, expected one that photons can be stored on");
+  return weights;
+}
+
+double watt(Rgb flux) { return static_cast<double>(mean(flux)); }
+
+}  // namespace
+
+// Photons on their way side by side, so that their rays can share packets.
+class PhotonTracer::Group {
+ public:
+  Group(const PhotonTracer& tracer, std::vector<Photon>& stored, FluxLedger& ledger)
+      : scene_(tracer.scene_), settings_(tracer.settings_), source_(tracer.source_), stored_(stored), ledger_(ledger) {}
+
+  void start(std::uint64_t index) {
+    KeyRandom random(settings_.seed, KeyRandom::kPhoton, index);
+    const double place =
+        (static_cast<double>(index) + static_cast<double>(random.next_1d())) / static_cast<double>(settings_.photons);
+    const Vec2f u_point = random.next_2d(), u_direction = random.next_2d();
+    const std::optional<EmissionSample> emission = source_.emit(place, u_point, u_direction);
+    if (!emission) return;
+    const Rgb flux = emission->flux / static_cast<float>(settings_.photons);
+    if (!(max_component(flux) > 0) || !is_finite(flux)) return;
+    ledger_.emitted += watt(flux);
+    photons_[size_] = {flux, max_component(flux), PhotonKind::kDirect, random};
+    rays_[size_++] = emission->ray;
+  }
+
+  void follow(RayQueries& queries) {
+    for (int bounce = 0; size_ > 0; ++bounce) {
+      queries.intersect({rays_.data(), size_}, {hits_.data(), size_}, false);
+      std::size_t alive = 0;
+      for (std::size_t i = 0; i < size_; ++i) {
+        if (!advance(photons_[i], rays_[i], hits_[i], bounce)) continue;
+        photons_[alive] = photons_[i];
+        rays_[alive++] = rays_[i];
+      }
+      size_ = alive;
+    }
+  }
+
+ private:
+  struct Flying {
+    Rgb flux;          // W
+    float begun_with;  // largest channel at emission, W
+    PhotonKind kind;
+    KeyRandom random{0, KeyRandom::kPhoton, 0};
+  };
+
+  // Takes a photon through its next surface and leaves its next ray. False when it has ended.
+  bool advance(Flying& photon, Ray& ray, const Hit& hit, int bounce) {
+    const double arriving = watt(photon.flux);
+    if (hit.shape == Hit::kNone) {
+      ledger_.escaped += arriving;
+      return false;
+    }
+    ledger_.arrive(static_cast<std::size_t>(bounce), arriving);
+    const PathVertex vertex(scene_, ray, hit, space_);
+    if (vertex.surface->has_continuous_lobe) store(vertex, photon, ray);
+    if (bounce + 1 == settings_.max_bounces) {
+      ledger_.cut += arriving;
+      return false;
+    }
+    const std::optional<ScatteredFlux> scatter = scatter_flux(vertex, -ray.direction, photon.random);
+    const Rgb scattered = scatter ? photon.flux * scatter->share : Rgb{};
+    if (!is_finite(scattered)) {
+      ledger_.absorbed += arriving;
+      return false;
+    }
+    ledger_.absorbed += arriving - watt(scattered);
+    const float survival = std::min(max_component(scattered) / photon.begun_with, kMaxSurvival);
+    if (!(photon.random.next_1d() < survival)) {
+      ledger_.ended += watt(scattered);
+      return false;
+    }
+    photon.flux = scattered * (1 / survival);
+    ledger_.regained += watt(photon.flux) - watt(scattered);
+    if (!scatter->passes) photon.kind = kind_after(photon.kind, scatter->delta);
+    if (photon.kind == PhotonKind::kIndirect && !settings_.kinds.contains(PhotonKind::kIndirect)) {
+      ledger_.cut += watt(photon.flux);  // it stays of that kind
+      return false;
+    }
+    ray = {vertex.origin_towards(scatter->direction), scatter->direction};
+    return true;
+  }
+
+  static PhotonKind kind_after(PhotonKind kind, bool delta) {
+    return delta && kind != PhotonKind::kIndirect ? PhotonKind::kCaustic : PhotonKind::kIndirect;
+  }
+
+  void store(const PathVertex& vertex, Flying& photon, const Ray& ray) {
+    if (!settings_.kinds.contains(photon.kind)) return;
+    const PhotonLight light(photon.flux, -ray.direction, vertex.point.geometric_normal, photon.kind, photon.random.next_1d());
+    stored_.push_back({vertex.point.position, light});
+  }
+
+  const Scene& scene_;
+  const PhotonSettings& settings_;
+  const ParticleSource& source_;
+  std::vector<Photon>& stored_;
+  FluxLedger& ledger_;
+  BsdfSpace space_;
+  std::size_t size_ = 0;
+  std::array<Flying, kGroup> photons_;
+  std::array<Ray, kGroup> rays_;
+  std::array<Hit, kGroup> hits_;
+};
+
+PhotonTracer::PhotonTracer(const Scene& scene, const PhotonSettings& settings, const std::vector<double>& weights)
+    : scene_(scene), settings_(settings), source_(scene, checked(scene, settings, weights)) {}
+
+PhotonTracer::PhotonTracer(const Scene& scene, const PhotonSettings& settings)
+    : PhotonTracer(scene, settings, ParticleSource::powers(scene)) {}
+
+void PhotonTracer::trace(std::uint64_t first, std::size_t count, RayQueries& queries, std::vector<Photon>& stored,
+                         FluxLedger& ledger) const {
+  Group group(*this, stored, ledger);
+  for (std::size_t i = 0; i < count; ++i) group.start(first + i);
+  group.follow(queries);
+}
+
+}  // namespace fluxfarm

@@ -1,0 +1,54 @@
+// Follows photons from the emitters through the scene and stores them where they land.
+//
+// [Jensen96] H. W. Jensen, "Global Illumination using Photon Maps", EGWR 1996.
+// Scattering is the BSDF's own sampling, which chooses between its lobes; Russian roulette then keeps the flux of a photon: with
+// P = max over channels (flux after) / max over channels (flux at emission) it goes on with 1/P of what is left. For a photon that
+// lost no colour yet P is the largest reflectance, diffuse and specular together, as in [Jensen96]. So photons of one emitter stay
+// equally strong, which is what density estimates want.
+//
+// Photons are stored at surfaces with a continuous lobe, at every bounce. Participating media are not modelled.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "accel/ray_queries.h"
+#include "integrators/light_flux.h"
+#include "integrators/photon/flux_ledger.h"
+#include "integrators/photon/photon.h"
+#include "scene/scene.h"
+
+namespace fluxfarm {
+
+// What is shot. Photon i depends on the scene, these settings and i alone, but for the last bits of what a packet of rays gives.
+struct PhotonSettings {
+  std::uint64_t photons = 0;  // shot in all: each carries one so-many-th of the power
+  std::uint64_t seed = 0;
+  int max_bounces = -1;  // surfaces on the way, with the one where the photon is stored; -1 is unlimited
+  PhotonKinds kinds = PhotonKinds::all();
+};
+
+class PhotonTracer {
+ public:
+  // Photons that are followed side by side.
+  static constexpr std::size_t kGroup = 64;
+
+  // `weights`: parts of the emitters in the photons, as ParticleSource takes them. Throws SettingError if there is nothing to
+  // shoot, or no surface to store it, and where media are in the way.
+  PhotonTracer(const Scene& scene, const PhotonSettings& settings, const std::vector<double>& weights);
+  // In proportion to power.
+  PhotonTracer(const Scene& scene, const PhotonSettings& settings);
+
+  // Follows photons first ... first + count - 1, count <= kGroup. Appends what they leave, in an order that is fixed.
+  void trace(std::uint64_t first, std::size_t count, RayQueries& queries, std::vector<Photon>& stored, FluxLedger& ledger) const;
+
+ private:
+  class Group;
+
+  const Scene& scene_;
+  PhotonSettings settings_;
+  ParticleSource source_;
+};
+
+}  // namespace fluxfarm
