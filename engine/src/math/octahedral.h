@@ -11,7 +11,7 @@
 
 namespace fluxfarm {
 
-// `v` in 2 * kBits bits, kBits <= 16. Off by at most 2.9 / (2^kBits - 2) rad.
+// `v` in 2 * kBits bits, kBits <= 16. Off by at most 4.3 / (2^kBits - 2) rad.
 template <int kBits>
 std::uint32_t to_octahedral(Vec3f v) {
   // An even number of steps, so that the axes are hit exactly.

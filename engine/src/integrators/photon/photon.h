@@ -1,7 +1,7 @@
 // A stored particle of light, in 24 bytes.
 //
 // What is lost: of the flux, all but 8 bits of the largest channel (rounded by a dither, so that sums are right in the mean); of
-// the direction whatever is below 0.003 degrees, of the normal below 0.05 degrees.
+// the direction up to 0.004 degrees, of the normal up to 0.06 degrees.
 //
 // [Jensen96] H. W. Jensen, "Global Illumination using Photon Maps", EGWR 1996.
 #pragma once
