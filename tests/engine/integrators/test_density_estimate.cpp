@@ -2,6 +2,7 @@
 // predicted. Each case has a twin with a fault, which the same test rejects.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <bit>
 #include <cmath>
 #include <functional>
@@ -375,6 +376,32 @@ TEST(DensityEstimate, Fails44_CurvedReceiversHaveNoBias) {
   EXPECT_LT(measured(0.1f).z(1), kMaxZ);
   EXPECT_LT(measured(0.38f).z(1), kMaxZ);
   EXPECT_GT(measured(0.6f).z(1), kTwinZ);  // beyond what the tests of normal and plane take for one surface
+}
+
+// ---------------------------------------------------------------- G2
+
+TEST(DensityEstimate, G2_IntegratingSphereOfAColour) {
+  SceneBuilder builder;
+  const Rgb albedo{0.8f, 0.5f, 0.1f};
+  builder.shape(SphereDescription{{0, 0, 0}, 1}, builder.add(DiffuseDescription{albedo}), 0, true);
+  builder.emitter(PointEmitterDescription{{0.3f, 0.4f, -0.2f}, Rgb{1}});
+  const Scene scene(builder.description(), 1);
+  std::array<std::vector<double>, 3> values;
+  for (std::uint64_t seed = 1; seed <= testing::kReplicates; ++seed) {
+    const PhotonMap map(shoot(scene, {.photons = 20000, .seed = seed, .kinds = PhotonKind::kIndirect}).photons, 2);
+    Rgb sum;
+    for (const Vec3f n : {Vec3f{1, 0, 0}, Vec3f{-1, 0, 0}, Vec3f{0, 1, 0}, Vec3f{0, -1, 0}, Vec3f{0, 0, 1}, Vec3f{0, 0, -1}}) {
+      sum += estimate_within(map, SurfacePatch(n, -n, PhotonSide::kFront, 0.38f), 0.38f, BoxKernel{}, AsIrradiance{}).value;
+    }
+    for (std::size_t c = 0; c < 3; ++c) values[c].push_back(static_cast<double>(std::array{sum.r, sum.g, sum.b}[c]) / 6);
+  }
+  for (std::size_t c = 0; c < 3; ++c) {
+    const auto rho = static_cast<double>(std::array{albedo.r, albedo.g, albedo.b}[c]);
+    const double expected = rho / (1 - rho);  // Phi = 4 pi over the wall's 4 pi
+    const Measurement m = testing::summarize(values[c]);
+    EXPECT_LT(m.z(expected), kMaxZ) << c << ": " << m.mean << " for " << expected;
+    EXPECT_GT(m.z(1.2 * expected), kTwinZ) << c;
+  }
 }
 
 // ---------------------------------------------------------------- radiance

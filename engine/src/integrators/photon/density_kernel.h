@@ -22,7 +22,7 @@ struct EpanechnikovKernel {
   float weight(float t) const { return 2 * (1 - t); }
 };
 
-// Smooth at its rim, too.                                                                          [Silverman86, eq. 4.5]
+// Smooth at its rim, too.                                                                          [Silverman86]
 // [Silverman86] B. W. Silverman, "Density Estimation for Statistics and Data Analysis", Chapman and Hall 1986.
 struct SilvermanKernel {
   static constexpr double kBias = 1.0 / 16, kVariance = 9.0 / 5;
