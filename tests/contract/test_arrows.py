@@ -43,7 +43,7 @@ THIRD_PARTY = {
     r".*\.pb\.h": ["worker/codec.cpp"],
     r"nlohmann/": ["io/", "worker/plan.cpp", "apps/"],
     r"CLI/": ["apps/"],
-    r"nanoflann": ["apps/nanoflann_map.h"],
+    r"nanoflann\.hpp": ["apps/nanoflann_map.h"],
 }
 
 # Each room of the service and the rooms that it may use; `errors` belongs to all.
