@@ -32,9 +32,10 @@ std::vector<PathVertex> seen_places(const Scene& scene) {
   const auto width = static_cast<std::size_t>(scene.film().width), height = static_cast<std::size_t>(scene.film().height);
   const std::size_t samples = kEstimates / (width * height) + 1, step = std::max<std::size_t>(width * height / kEstimates, 1);
   for (std::size_t pixel = 0; pixel < width * height; pixel += step) {
+    const std::size_t column = pixel % width, row = pixel / width;
     for (std::size_t i = 0; i < samples; ++i) {
       const float shift = (static_cast<float>(i) + 0.5f) / static_cast<float>(samples);
-      const Ray ray = scene.camera().ray(static_cast<float>(pixel % width) + shift, static_cast<float>(pixel / width) + 0.5f);
+      const Ray ray = scene.camera().ray(static_cast<float>(column) + shift, static_cast<float>(row) + 0.5f);
       Hit hit;
       queries.intersect({&ray, 1}, {&hit, 1}, false);
       if (hit.shape == Hit::kNone || !scene.surface(hit.shape).has_continuous_lobe) continue;

@@ -23,7 +23,9 @@ std::uint32_t to_octahedral(Vec3f v) {
     y = std::copysign(1 - std::fabs(x), y);
     x = folded;
   }
-  const auto step = [&](float coordinate) { return static_cast<std::uint32_t>((0.5f * coordinate + 0.5f) * kSteps + 0.5f); };
+  // From [-1, 1] to the nearest of 0 ... kSteps: half a step is added before the fraction is cut off.
+  constexpr float kHalf = 0.5f * kSteps;
+  const auto step = [&](float coordinate) { return static_cast<std::uint32_t>(coordinate * kHalf + (kHalf + 0.5f)); };
   return step(x) << kBits | step(y);
 }
 

@@ -206,6 +206,31 @@ TEST(PhotonEmission, EachKindOfEmitterBringsTheIrradianceOfItsClosedForm) {
   }
 }
 
+// Variance of the number of photons on a disk under a point light, over the binomial one.
+double disk_variance(const Scene& scene, std::uint64_t photons) {
+  const double share = (1 - 1 / std::sqrt(1.25)) / 2;  // of a disk of radius 0.5, 1 below
+  std::vector<double> counts;
+  for (std::uint64_t seed = 1; seed <= 64; ++seed) {
+    double count = 0;
+    for (const Photon& photon : shoot(scene, {.photons = photons, .seed = seed, .max_bounces = 1}).photons) {
+      count += length_squared(photon.position) <= 0.25f;
+    }
+    counts.push_back(count);
+  }
+  const Measurement m = testing::summarize(counts);
+  return m.standard_error * m.standard_error * 64 / (static_cast<double>(photons) * share * (1 - share));
+}
+
+TEST(PhotonEmission, FillsTheDirectionsEvenly) {
+  SceneBuilder builder;
+  builder.floor(0, 2, builder.diffuse(0)).emitter(PointEmitterDescription{{0, 1, 0}, Rgb{1}});
+  const Scene scene(builder.description(), 1);
+  // Independent photons would give 1 +- 0.18.
+  EXPECT_LT(disk_variance(scene, 4096), 0.1);
+  EXPECT_LT(disk_variance(scene, 5000), 0.2);
+  EXPECT_GT(disk_variance(scene, 5000), 0);
+}
+
 TEST(PhotonEmission, PhotonsOfOneEmitterAreEquallyStrong) {
   const Scene scene(closed_room(0.7f), 1);
   const ShotPhotons shot = shoot(scene, {.photons = 1000, .seed = 1});

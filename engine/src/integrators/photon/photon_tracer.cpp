@@ -7,6 +7,7 @@
 
 #include "integrators/key_random.h"
 #include "integrators/path/path_vertex.h"
+#include "integrators/photon/emission_sequence.h"
 #include "integrators/roulette.h"
 #include "support/error.h"
 
@@ -34,14 +35,19 @@ double watt(Rgb flux) { return static_cast<double>(mean(flux)); }
 class PhotonTracer::Group {
  public:
   Group(const PhotonTracer& tracer, std::vector<Photon>& stored, FluxLedger& ledger)
-      : scene_(tracer.scene_), settings_(tracer.settings_), source_(tracer.source_), stored_(stored), ledger_(ledger) {}
+      : scene_(tracer.scene_),
+        settings_(tracer.settings_),
+        source_(tracer.source_),
+        sequence_(tracer.settings_.seed),
+        stored_(stored),
+        ledger_(ledger) {}
 
   void start(std::uint64_t index) {
     KeyRandom random(settings_.seed, KeyRandom::kPhoton, index);
     const double place =
         (static_cast<double>(index) + static_cast<double>(random.next_1d())) / static_cast<double>(settings_.photons);
-    const Vec2f u_point = random.next_2d(), u_direction = random.next_2d();
-    const std::optional<EmissionSample> emission = source_.emit(place, u_point, u_direction);
+    const EmissionSequence::Point u = sequence_.at(index);
+    const std::optional<EmissionSample> emission = source_.emit(place, u.place, u.direction);
     if (!emission) return;
     const Rgb flux = emission->flux / static_cast<float>(settings_.photons);
     if (!(max_component(flux) > 0) || !is_finite(flux)) return;
@@ -121,6 +127,7 @@ class PhotonTracer::Group {
   const Scene& scene_;
   const PhotonSettings& settings_;
   const ParticleSource& source_;
+  const EmissionSequence sequence_;
   std::vector<Photon>& stored_;
   FluxLedger& ledger_;
   BsdfSpace space_;
