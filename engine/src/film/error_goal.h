@@ -4,10 +4,9 @@
 // After a round comes one look:
 // - The picture is done when the upper bound of its error (film/error_bound.h) is at or below the goal.
 // - Otherwise tiles are open in which a sample takes off most of the error, so that their samples end in proportion to their
-// standard
-//   deviations: the fewest in all for the picture's error. Where few cells carry the error of a neighbourhood of 3 x 3 tiles, its
-//   variance per sample stands in for the tile's own if that is smaller: rare events strike neighbours alike, and the tile may not
-//   have seen its own yet.
+//   standard deviations: the fewest in all for the picture's error. Where few cells carry the error of a neighbourhood of 3 x 3
+//   tiles, its variance per sample stands in for the tile's own if that is smaller: rare events strike neighbours alike, and the
+//   tile may not have seen its own yet.
 // - Of the open tiles those with the fewest samples make up the next round.
 // - Light that an audit finds and the paths do not (film/unseen_error.h) counts like noise: cells in doubt stay open for a while,
 //   and what no sample can mend is taken off the goal, or, where little would be left of that, ends as a goal that is not claimed.

@@ -5,9 +5,8 @@
 // is depends on the photons and their order alone. Why it, and not a grid: docs/decisions/0006.
 //
 // [Bentley75]  J. L. Bentley, "Multidimensional Binary Search Trees Used for Associative Searching", CACM 18(9), 1975.
-// [Friedman77] J. H. Friedman, J. L. Bentley, R. A. Finkel, "An Algorithm for Finding Best Matches in Logarithmic Expected Time",
-// ACM
-//              TOMS 3(3), 1977.
+// [Friedman77] J. H. Friedman, J. L. Bentley, R. A. Finkel, "An Algorithm for Finding Best Matches in Logarithmic Expected
+//              Time", ACM TOMS 3(3), 1977.
 #pragma once
 
 #include <algorithm>
