@@ -35,13 +35,28 @@ class NanoflannMap {
   // The same for all within `radius`, in any order.
   template <typename Visit>
   void within(Vec3f center, float radius, Workspace& space, Visit&& visit) const {
-    nanoflann::SearchParams unsorted;
-    unsorted.sorted = false;
-    tree_.radiusSearch(&center.x, radius * radius, space.found, unsorted);
+    space.found.clear();
+    Within set{radius * radius, space.found};
+    tree_.findNeighbors(set, &center.x, {});
     for (const auto& [index, distance_squared] : space.found) visit(cloud_.photons[index], distance_squared);
   }
 
  private:
+  // Takes what the tree finds: its own set for a radius has another type from version 1.5 on.
+  struct Within {
+    using DistanceType = float;
+    float bound;  // m^2
+    std::vector<std::pair<std::size_t, float>>& found;
+
+    bool addPoint(float distance_squared, std::size_t index) {
+      if (distance_squared < bound) found.emplace_back(index, distance_squared);
+      return true;
+    }
+    float worstDist() const { return bound; }
+    bool full() const { return true; }
+    std::size_t size() const { return found.size(); }
+    void sort() const {}  // any order will do
+  };
   struct Cloud {
     const std::vector<Photon>& photons;
     std::size_t kdtree_get_point_count() const { return photons.size(); }
