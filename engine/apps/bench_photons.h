@@ -7,7 +7,7 @@
 
 namespace fluxfarm {
 
-// Medians of a few rounds on so many threads. `nanoflann_...` are there if nanoflann was there when this was built.
+// Medians of a few rounds on so many threads. What nanoflann does with the same photons is there, or a word that it was left out.
 nlohmann::json bench_photons(const Scene& scene, int threads);
 
 }  // namespace fluxfarm
