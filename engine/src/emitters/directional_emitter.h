@@ -16,7 +16,7 @@ class DirectionalEmitter final : public Emitter {
     return EmitterSample{{}, {}, -direction_, kDistant, irradiance_, 0, true};
   }
   std::optional<EmissionSample> emit(Vec2f u_point, Vec2f, Vec3f scene_center) const override {
-    EmissionSample sample = emitted_from_outside(direction_, irradiance_, scene_center, scene_radius_, u_point);
+    EmissionSample sample = emitted_from_outside(direction_, irradiance_, 0, scene_center, scene_radius_, u_point);
     sample.delta = true;
     return sample;
   }

@@ -5,7 +5,7 @@
 
 namespace fluxfarm {
 
-EmissionSample emitted_by(const AreaSample& point, Rgb power, bool both_sides, Vec2f u_direction) {
+EmissionSample emitted_by(const AreaSample& point, Rgb power, float area, bool both_sides, Vec2f u_direction) {
   Vec3f normal = point.normal;
   if (both_sides) {
     const bool back = u_direction.x >= 0.5f;
@@ -13,14 +13,15 @@ EmissionSample emitted_by(const AreaSample& point, Rgb power, bool both_sides, V
     if (back) normal = -normal;
   }
   const Vec3f direction = Frame(normal).to_world(square_to_cosine_hemisphere(u_direction));
-  return {{offset_point(point.position, normal), direction}, power, false};
+  return {{offset_point(point.position, normal), direction}, power, false, {area * dot(normal, direction), 0}};
 }
 
-EmissionSample emitted_from_outside(Vec3f direction, Rgb irradiance, Vec3f scene_center, float scene_radius, Vec2f u_point) {
+EmissionSample emitted_from_outside(Vec3f direction, Rgb irradiance, float solid_angle, Vec3f scene_center, float scene_radius,
+                                    Vec2f u_point) {
   const Frame frame(direction);
   const Vec2f p = square_to_uniform_disk(u_point);
   const Vec3f origin = scene_center + scene_radius * (p.x * frame.s + p.y * frame.t - direction);
-  return {{origin, direction}, irradiance * (kPi * scene_radius * scene_radius), false};
+  return {{origin, direction}, irradiance * (kPi * scene_radius * scene_radius), false, {0, solid_angle}};
 }
 
 std::optional<EmitterSample> AreaEmitter::sample(Vec3f reference, Vec2f u) const {
@@ -50,7 +51,7 @@ std::optional<EmitterSample> PointEmitter::sample(Vec3f reference, Vec2f) const 
 }
 
 std::optional<EmissionSample> PointEmitter::emit(Vec2f, Vec2f u_direction, Vec3f) const {
-  return EmissionSample{{position_, square_to_uniform_sphere(u_direction)}, power(), true};
+  return EmissionSample{{position_, square_to_uniform_sphere(u_direction)}, power(), true, {}};
 }
 
 std::optional<EmitterBounds> PointEmitter::bounds() const {

@@ -5,6 +5,7 @@
 // importance weights is zero), so it only answers what radiance a ray that leaves the scene brings back.
 #pragma once
 
+#include <cmath>
 #include <limits>
 #include <optional>
 
@@ -30,11 +31,22 @@ struct EmitterSample {
   bool delta = false;         // one direction only: BSDF sampling cannot find it
 };
 
+// How large an emitter looks to what its light meets: the solid angle that all of it would fill if it shone everywhere as at the
+// point that the light came from. Nothing for a delta light.
+struct ApparentSize {
+  float area = 0;         // of light from inside the scene: the emitter's area times the cosine at its point, m^2
+  float solid_angle = 0;  // of light from outside: the inverse of the density of its direction, sr
+
+  // sr, from so many metres away.
+  float from(float distance) const { return solid_angle + area / (distance * distance); }
+};
+
 // A ray on which light leaves an emitter, with the flux that it stands for.
 struct EmissionSample {
   Ray ray;
   Rgb flux;            // what leaves in all, over the density of this ray, W
   bool delta = false;  // of a delta light: BSDF sampling from the other end cannot find it
+  ApparentSize size = {};
 };
 
 class Emitter {
@@ -46,6 +58,8 @@ class Emitter {
   // `scene_center`. Empty: no light leaves there.
   virtual std::optional<EmissionSample> emit(Vec2f u_point, Vec2f u_direction, Vec3f scene_center) const = 0;
   virtual Rgb power() const = 0;  // W; of light from outside, what the scene can catch
+  // Of its surface, m^2; 0 for a point and for light from outside.
+  virtual float area() const { return 0; }
   // Where it is and whither it shines. Empty: it is outside the scene.
   virtual std::optional<EmitterBounds> bounds() const = 0;
 };
@@ -60,11 +74,20 @@ inline std::optional<EmitterSample> emitted_from(const std::optional<ShapeSample
       s->position, back ? -s->normal : s->normal, s->wi, s->distance, radiance / s->pdf_solid_angle, s->pdf_solid_angle, false};
 }
 
-// What a surface of that `power` sends from a point that was chosen evenly over its area: radiance is the same in all directions.
-EmissionSample emitted_by(const AreaSample& point, Rgb power, bool both_sides, Vec2f u_direction);
+// How large the emitter of a sample looks from the reference of that sample, sr.
+inline float solid_angle_of(const Emitter& emitter, const EmitterSample& s) {
+  if (s.delta) return 0;
+  if (s.distance == kDistant) return 1 / s.pdf_solid_angle;
+  return ApparentSize{emitter.area() * std::fabs(dot(s.normal, s.wi))}.from(s.distance);
+}
+
+// What a surface of that `power` and `area` (m^2) sends from a point that was chosen evenly over it: radiance is the same in all
+// directions.
+EmissionSample emitted_by(const AreaSample& point, Rgb power, float area, bool both_sides, Vec2f u_direction);
 // What comes from outside in `direction` (world, unit), where a surface across it catches `irradiance`, through an even choice of
-// points of the disk which the scene's sphere shows to it.
-EmissionSample emitted_from_outside(Vec3f direction, Rgb irradiance, Vec3f scene_center, float scene_radius, Vec2f u_point);
+// points of the disk which the scene's sphere shows to it. `solid_angle` as in ApparentSize.
+EmissionSample emitted_from_outside(Vec3f direction, Rgb irradiance, float solid_angle, Vec3f scene_center, float scene_radius,
+                                    Vec2f u_point);
 
 class AreaEmitter final : public Emitter {
  public:
@@ -74,9 +97,14 @@ class AreaEmitter final : public Emitter {
 
   std::optional<EmitterSample> sample(Vec3f reference, Vec2f u) const override;
   std::optional<EmissionSample> emit(Vec2f u_point, Vec2f u_direction, Vec3f) const override {
-    return emitted_by(shape_.sample_area(u_point), power(), both_sides_, u_direction);
+    return emitted_by(shape_.sample_area(u_point), power(), area(), both_sides_, u_direction);
   }
-  Rgb power() const override { return radiance_ * ((both_sides_ ? kTwoPi : kPi) * shape_.area()); }
+  Rgb power() const override { return radiance_ * ((both_sides_ ? kTwoPi : kPi) * area()); }
+  float area() const override { return shape_.area(); }
+  // As seen along a ray in direction `wi`, of which `point` is the end.
+  ApparentSize apparent_size(const SurfacePoint& point, Vec3f wi) const {
+    return {area() * std::fabs(dot(point.geometric_normal, wi)), 0};
+  }
   std::optional<EmitterBounds> bounds() const override;
 
   // Radiance that leaves `point` towards -wi, where wi is the direction in which the point is seen. Zero on a back that is dark.

@@ -20,7 +20,7 @@ std::optional<EmitterSample> EnvmapEmitter::sample(Vec3f, Vec2f u) const {
 std::optional<EmissionSample> EnvmapEmitter::emit(Vec2f u_point, Vec2f u_direction, Vec3f scene_center) const {
   const std::optional<EmitterSample> seen = sample(scene_center, u_direction);
   if (!seen) return std::nullopt;
-  return emitted_from_outside(-seen->wi, seen->weight, scene_center, scene_radius_, u_point);
+  return emitted_from_outside(-seen->wi, seen->weight, 1 / seen->pdf_solid_angle, scene_center, scene_radius_, u_point);
 }
 
 Rgb EnvmapEmitter::power() const {

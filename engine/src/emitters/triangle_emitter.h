@@ -18,6 +18,8 @@ class TriangleEmitter final : public Emitter {
   // Never called: particles leave the mesh as a whole.
   std::optional<EmissionSample> emit(Vec2f, Vec2f, Vec3f) const override;
   Rgb power() const override { return radiance_ * ((both_sides_ ? kTwoPi : kPi) * mesh_->triangle_area(triangle_)); }
+  // Of the mesh: that of all that it stands for.
+  float area() const override { return mesh_->area(); }
   std::optional<EmitterBounds> bounds() const override;
 
  private:

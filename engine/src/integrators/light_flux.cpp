@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "sampling/warp.h"
 
@@ -14,20 +15,27 @@ namespace {
 //
 // A delta lobe has no value to ask for. It is taken to scatter both ways alike, up to the scaling by refraction, which holds but
 // for those under a normal map: they miss the ratio of the cosines to the shading normal.
-Rgb share_of_flux(const PathVertex& vertex, Vec3f from, Vec3f towards, const BsdfSample& s) {
+ScatteredFlux scattered(const PathVertex& vertex, Vec3f from, Vec3f towards, const BsdfSample& s) {
+  ScatteredFlux scattered{towards, {}, std::numeric_limits<float>::infinity(), s.delta, s.passes};
   const float arriving = std::fabs(dot(from, vertex.point.geometric_normal));
   const float leaving = std::fabs(dot(towards, vertex.point.geometric_normal));
-  if (!(arriving > 0)) return {};
+  if (!(arriving > 0)) return scattered;
   const float cosines = std::fabs(vertex.wo.z) * leaving / arriving;
-  if (!s.delta) return vertex.bsdf->value(s.wi, vertex.wo).f * (cosines / s.pdf);
+  if (!s.delta) {
+    const Rgb f = vertex.bsdf->value(s.wi, vertex.wo).f;
+    scattered.share = f * (cosines / s.pdf);
+    scattered.value = max_component(f);
+    return scattered;
+  }
   const float cos_leaving = std::fabs(s.wi.z);
-  return cos_leaving > 0 ? s.weight * (s.eta * s.eta * cosines / cos_leaving) : Rgb{};
+  if (cos_leaving > 0) scattered.share = s.weight * (s.eta * s.eta * cosines / cos_leaving);
+  return scattered;
 }
 
 // The constant environment: every direction alike.
 EmissionSample emit_environment(const Scene& scene, Vec2f u_point, Vec2f u_direction) {
   const Rgb irradiance = *scene.environment() * (4 * kPi);  // summed over all directions
-  return emitted_from_outside(square_to_uniform_sphere(u_direction), irradiance, scene.center(), scene.radius(), u_point);
+  return emitted_from_outside(square_to_uniform_sphere(u_direction), irradiance, 4 * kPi, scene.center(), scene.radius(), u_point);
 }
 
 }  // namespace
@@ -59,8 +67,7 @@ std::optional<ScatteredFlux> scatter_flux(const PathVertex& vertex, Vec3f from, 
   const float u_lobe = random.next_1d();
   const std::optional<BsdfSample> s = vertex.bsdf->sample(vertex.wo, u_lobe, random.next_2d());
   if (!s) return std::nullopt;
-  const Vec3f direction = vertex.frame.to_world(s->wi);
-  return ScatteredFlux{direction, share_of_flux(vertex, from, direction, *s), s->delta, s->passes};
+  return scattered(vertex, from, vertex.frame.to_world(s->wi), *s);
 }
 
 }  // namespace fluxfarm

@@ -37,6 +37,7 @@ class ParticleSource {
 struct ScatteredFlux {
   Vec3f direction;     // world, unit
   Rgb share;           // of the flux that arrived, which goes there in the mean
+  float value;         // of the lobe for light that goes that way, largest channel, sr^-1; infinite for a delta lobe
   bool delta, passes;  // as in BsdfSample
 };
 

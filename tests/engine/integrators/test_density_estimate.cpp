@@ -31,7 +31,7 @@ float unit(Random& random) { return static_cast<float>(random() >> 8) * 0x1p-24f
 Photon photon_at(Vec3f position, float flux, Vec3f normal = kUp, Vec3f wi = kUp) {
   const std::uint32_t bits = std::bit_cast<std::uint32_t>(position.x) ^ (std::bit_cast<std::uint32_t>(position.z) << 7);
   const float dither = static_cast<float>(mix_bits_32(bits) >> 8) * 0x1p-24f;
-  return {position, PhotonLight(Rgb{flux}, wi, normal, PhotonKind::kDirect, dither)};
+  return {position, PhotonLight(Rgb{flux}, wi, normal, PhotonKind::kDirect, 1, dither)};
 }
 
 // z of places on a line, 0.1 apart.

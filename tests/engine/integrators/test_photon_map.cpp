@@ -20,7 +20,7 @@ std::vector<Photon> photons_of(std::size_t count) {
     Vec3f p = i % 3 == 0 ? Vec3f{u, 0, v} : i % 3 == 1 ? Vec3f{0, u, v} : Vec3f{u * u * u, v * v * v, 1};
     if (i % 7 == 6) p = photons[i / 2].position;
     const Vec3f up{0, 1, 0};
-    photons.push_back({p, PhotonLight(Rgb{static_cast<float>(i % 128 + 128)}, up, up, PhotonKind::kDirect, 0)});
+    photons.push_back({p, PhotonLight(Rgb{static_cast<float>(i % 128 + 128)}, up, up, PhotonKind::kDirect, 1, 0)});
   }
   return photons;
 }

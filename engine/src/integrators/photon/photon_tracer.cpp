@@ -8,6 +8,7 @@
 #include "integrators/key_random.h"
 #include "integrators/path/path_vertex.h"
 #include "integrators/photon/emission_sequence.h"
+#include "integrators/photon/sharpness.h"
 #include "integrators/roulette.h"
 #include "support/error.h"
 
@@ -16,7 +17,9 @@ namespace {
 
 const std::vector<double>& checked(const Scene& scene, const PhotonSettings& settings, const std::vector<double>& weights) {
   if (settings.photons == 0) throw SettingError("photons = 0, expected at least 1");
-  if (scene.census().media > 0) throw SettingError("the scene has participating media, which photon maps do not model");
+  if (scene.census().media > 0 || scene.census().null_boundaries) {
+    throw SettingError("the scene has participating media or null boundaries, which photon maps do not model");
+  }
   if (!(std::accumulate(weights.begin(), weights.end(), 0.0) > 0)) {
     throw SettingError("nothing in the scene emits light, expected an emitter to shoot photons from");
   }
@@ -52,7 +55,7 @@ class PhotonTracer::Group {
     const Rgb flux = emission->flux / static_cast<float>(settings_.photons);
     if (!(max_component(flux) > 0) || !is_finite(flux)) return;
     ledger_.emitted += watt(flux);
-    photons_[size_] = {flux, max_component(flux), PhotonKind::kDirect, random};
+    photons_[size_] = {flux, max_component(flux), emission->size, 0, PhotonKind::kDirect, random};
     rays_[size_++] = emission->ray;
   }
 
@@ -71,8 +74,10 @@ class PhotonTracer::Group {
 
  private:
   struct Flying {
-    Rgb flux;          // W
-    float begun_with;  // largest channel at emission, W
+    Rgb flux;           // W
+    float begun_with;   // largest channel at emission, W
+    ApparentSize size;  // of the emitter
+    float travelled;    // since emission, m
     PhotonKind kind;
     KeyRandom random{0, KeyRandom::kPhoton, 0};
   };
@@ -85,8 +90,9 @@ class PhotonTracer::Group {
       return false;
     }
     ledger_.arrive(static_cast<std::size_t>(bounce), arriving);
+    photon.travelled += hit.t;
     const PathVertex vertex(scene_, ray, hit, space_);
-    if (vertex.surface->has_continuous_lobe) store(vertex, photon, ray);
+    if (vertex.surface->has_continuous_lobe) store(vertex, photon, ray, bounce + 1);
     if (bounce + 1 == settings_.max_bounces) {
       ledger_.cut += arriving;
       return false;
@@ -105,7 +111,7 @@ class PhotonTracer::Group {
     }
     photon.flux = scattered * (1 / survival);
     ledger_.regained += watt(photon.flux) - watt(scattered);
-    if (!scatter->passes) photon.kind = kind_after(photon.kind, scatter->delta);
+    if (!scatter->passes) photon.kind = kind_after(photon, *scatter);
     if (photon.kind == PhotonKind::kIndirect && !settings_.kinds.contains(PhotonKind::kIndirect)) {
       ledger_.cut += watt(photon.flux);  // it stays of that kind
       return false;
@@ -114,13 +120,19 @@ class PhotonTracer::Group {
     return true;
   }
 
-  static PhotonKind kind_after(PhotonKind kind, bool delta) {
-    return delta && kind != PhotonKind::kIndirect ? PhotonKind::kCaustic : PhotonKind::kIndirect;
+  // One scattering further. Whether it was a sharp one is drawn, where that is not certain.
+  static PhotonKind kind_after(Flying& photon, const ScatteredFlux& scatter) {
+    if (photon.kind == PhotonKind::kIndirect) return PhotonKind::kIndirect;
+    const bool first = photon.kind == PhotonKind::kDirect;
+    const float sharp = sharpness(1 / scatter.value + (first ? photon.size.from(photon.travelled) : 0.0f));
+    if (!(sharp >= 1) && !(photon.random.next_1d() < sharp)) return PhotonKind::kIndirect;
+    return scatter.delta && photon.kind != PhotonKind::kGlossy ? PhotonKind::kCaustic : PhotonKind::kGlossy;
   }
 
-  void store(const PathVertex& vertex, Flying& photon, const Ray& ray) {
+  void store(const PathVertex& vertex, Flying& photon, const Ray& ray, int surfaces) {
     if (!settings_.kinds.contains(photon.kind)) return;
-    const PhotonLight light(photon.flux, -ray.direction, vertex.point.geometric_normal, photon.kind, photon.random.next_1d());
+    const PhotonLight light(photon.flux, -ray.direction, vertex.point.geometric_normal, photon.kind, surfaces,
+                            photon.random.next_1d());
     stored_.push_back({vertex.point.position, light});
   }
 
