@@ -25,7 +25,7 @@ void print_info(bool json) {
                                {"embree", ray_library_version()},
                                {"protocol_version", kProtocolVersion},
                                {"max_samples_per_pass", kMaxSamplesPerPass},
-                               {"integrators", {"path"}},
+                               {"integrators", integrator_names()},
                                {"threads", resolve_threads(0)}};
   if (json) {
     std::printf("%s\n", info.dump(2).c_str());
@@ -36,9 +36,9 @@ void print_info(bool json) {
   }
 }
 
-void print_plan(const SceneOptions& options, bool json) {
+void print_plan(const SceneOptions& options, const std::string& integrator, bool json) {
   const Scene scene(options.read(), 0);
-  const nlohmann::json plan = nlohmann::json::parse(plan_json(scene));
+  const nlohmann::json plan = nlohmann::json::parse(plan_json(scene, *make_integrator(integrator, scene)));
   if (json) {
     std::printf("%s\n", plan.dump(2).c_str());
     return;
@@ -65,7 +65,9 @@ void add_plan_command(CLI::App& app) {
   const auto json = std::make_shared<bool>(false);
   options->add_to(*command, false);
   command->add_flag("--json", *json, "As JSON");
-  command->callback([options, json] { print_plan(*options, *json); });
+  const auto integrator = std::make_shared<std::string>("auto");
+  command->add_option("--integrator", *integrator, "Method: auto, path or photon-progressive")->capture_default_str();
+  command->callback([options, integrator, json] { print_plan(*options, *integrator, *json); });
 }
 
 void add_worker_command(CLI::App& app) {

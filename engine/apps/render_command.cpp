@@ -94,7 +94,7 @@ void render(const RenderOptions& options) {
   if (isatty(STDERR_FILENO) != 0) std::fprintf(stderr, "\n");
   watch.lap();
 
-  const Image image = result.film.image(settings.crop, {"", "", "path", engine_build_id(), options.seed});
+  const Image image = result.film.image(settings.crop, {"", "", integrator->name(), engine_build_id(), options.seed});
   exr.commit([&](const std::filesystem::path& path) { write_exr(path, image); });
   if (png) png->commit([&](const std::filesystem::path& path) { write_png(path, image); });
   const double write = watch.lap();
@@ -118,7 +118,7 @@ void render(const RenderOptions& options) {
   }
   const nlohmann::json figures = {
       {"engine", engine_build_id()},
-      {"integrator", "path"},
+      {"integrator", integrator->name()},
       {"size", {film.width, film.height}},
       {"threads", threads},
       {"seed", options.seed},
@@ -128,10 +128,13 @@ void render(const RenderOptions& options) {
       {"rays", result.rays},
       {"rays_per_second", static_cast<double>(result.rays) / result.seconds},
       {"mean", result.summary.mean},
-      // Path tracing has no bias of its own; light that it never sampled is looked for where an error goal is to be claimed.
-      {"error", {{"noise", or_null(result.summary.error_noise)}, {"bias", 0.0}, {"unseen", or_null(result.error_unseen)}}},
+      // Light that was never sampled is looked for where an error goal is to be claimed.
+      {"error",
+       {{"noise", or_null(result.summary.error_noise)},
+        {"bias", or_null(result.summary.error_bias)},
+        {"unseen", or_null(result.error_unseen)}}},
       {"timeline", timeline},
-      {"plan", nlohmann::json::parse(plan_json(scene))},
+      {"plan", nlohmann::json::parse(plan_json(scene, *integrator))},
       {"warnings", warnings}};
   report->commit([&](const std::filesystem::path& path) { write_report(path, figures); });
 }
@@ -145,7 +148,7 @@ void add_render_command(CLI::App& app) {
   command->add_option("-o,--output", options->exr, "EXR file to write")->required();
   command->add_option("--png", options->png, "Also write a tone-mapped PNG");
   command->add_option("--report", options->report, "Write figures of the run as JSON");
-  command->add_option("--integrator", options->integrator, "Method: auto or path")->capture_default_str();
+  command->add_option("--integrator", options->integrator, "Method: auto, path or photon-progressive")->capture_default_str();
   auto* spp = command->add_option("--spp", options->goal.spp, "Samples per pixel")->check(CLI::Range(1u, 1u << 24));
   auto* seconds = command->add_option("--seconds", options->goal.seconds, "Time budget in seconds")->check(CLI::PositiveNumber);
   auto* error = command->add_option("--rel-error", options->goal.rel_error, "Stop at this estimated relative error, sqrt(relMSE)")

@@ -28,7 +28,7 @@ def run(*arguments: object) -> subprocess.CompletedProcess[str]:
         (["--spp", "1.5"], "--spp"),
         (["--seconds", "-1"], "--seconds"),
         (["--spp", "4", "--seconds", "4"], "excludes"),
-        (["--integrator", "magic"], 'integrator = "magic", expected path or auto'),
+        (["--integrator", "magic"], 'integrator = "magic", expected auto, path'),
         (["-D", "nothing"], "expected name=value"),
         (["--threads", "0"], "--threads"),
     ],

@@ -146,7 +146,7 @@ class FakeEngine:
         Path(work.exr_out).write_bytes(image(film, samples))
         Path(work.png_out).write_bytes(PNG_MAGIC + hashlib.sha256(film).digest())
         counts = {"min_samples": samples, "max_samples": samples, "mean_samples": samples}
-        merged = pb.PassMerged(**counts, mean_r=0.5, mean_g=0.25, mean_b=0.125)
+        merged = pb.PassMerged(**counts, mean_r=0.5, mean_g=0.25, mean_b=0.125, error_bias=0)
         if samples >= 2:
             merged.error_noise = samples**-0.5
             if decides:

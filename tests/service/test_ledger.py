@@ -47,7 +47,7 @@ REQUEST = JobRequest(
 )
 FACTS = SceneFacts(32, 32, PixelRect(0, 0, 32, 32), 0, "path", ("one warning",), {"parts": {}}, 0.1)
 GRID = TileGrid(FACTS.crop, 16)
-REVISION = Revision(1, 1, 1, 1, 1.0, None, (0.0, 0.0, 0.0), 0, 1.5, "e" * 64, 10, "p" * 64, "f" * 64, 0.0)
+REVISION = Revision(1, 1, 1, 1, 1.0, None, 0.0, (0.0, 0.0, 0.0), 0, 1.5, "e" * 64, 10, "p" * 64, "f" * 64, 0.0)
 
 
 @pytest.fixture

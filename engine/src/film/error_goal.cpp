@@ -5,6 +5,7 @@
 #include <limits>
 #include <numeric>
 
+#include "film/bias_error.h"
 #include "film/error_bound.h"
 #include "film/error_shares.h"
 #include "film/tile_grid.h"
@@ -174,6 +175,15 @@ ErrorGoal goal_for_doubt(ErrorGoal goal) {
   return goal;
 }
 
+// What follows where noise is low enough and the method's bias is not: it falls as samples are added.
+std::optional<Round> choose_biased(std::vector<TileError> tiles, const std::vector<double>& shares, const ErrorGoal& goal) {
+  for (std::size_t i = 0; i < tiles.size(); ++i) {
+    tiles[i].cells.scale(0);
+    tiles[i].pooled = shares[i];
+  }
+  return choose_round(tiles, goal);
+}
+
 // What follows because the audit doubts tiles of a picture whose noise is low enough.
 std::optional<Round> choose_doubtful(std::vector<TileError> tiles, const std::vector<std::uint32_t>& doubtful,
                                      const ErrorGoal& goal) {
@@ -204,8 +214,9 @@ Round first_round(const ErrorGoal& goal, PixelRect crop) {
 
 ErrorLook look_at(const Film& film, const ErrorGoal& goal, int number, const LightAudit* audit) {
   const PixelRect crop = film.crop();
+  const std::vector<PixelRect> rects = make_tiles(crop, kErrorTile);
   std::vector<TileError> tiles;
-  for (const PixelRect& rect : make_tiles(crop, kErrorTile)) tiles.push_back(measure(film, rect));
+  for (const PixelRect& rect : rects) tiles.push_back(measure(film, rect));
   pool(tiles, (crop.width + kErrorTile - 1) / kErrorTile);
   ErrorLook look;
   const bool known = std::ranges::all_of(tiles, [](const TileError& tile) { return tile.samples >= 2; });
@@ -218,14 +229,18 @@ ErrorLook look_at(const Film& film, const ErrorGoal& goal, int number, const Lig
     unseen = unseen_error(film, *audit, number);
     look.unseen = unseen.error;
   }
-  look.bound = std::hypot(noise, unseen.error);
-  const ErrorGoal for_noise = goal_for_noise(goal, unseen.unreachable_error);
+  BiasError bias;
+  if (film.biased() && known) bias = bias_error(film, rects);
+  look.bound = std::hypot(std::hypot(noise, unseen.error), bias.bound);
+  const ErrorGoal for_noise = goal_for_noise(goal, std::hypot(unseen.unreachable_error, bias.bound));
   look.samples = predict_samples(tiles, for_noise, number);
   if (noise > for_noise.rel_error) {
     look.next = choose_round(tiles, for_noise);
   } else if (look.bound > goal.rel_error) {
     // Where no sample can save the claim, none is spent on what samples may find.
-    if (unseen.unreachable_error < goal.rel_error) look.next = choose_doubtful(tiles, unseen.doubtful, goal);
+    const bool hopeless = unseen.unreachable_error >= goal.rel_error;
+    if (!hopeless && bias.bound > unseen.error) look.next = choose_biased(tiles, bias.shares, goal);
+    if (!hopeless && !look.next) look.next = choose_doubtful(tiles, unseen.doubtful, goal);
     if (look.next) {
       look.samples += samples_for_doubt(tiles, unseen.doubtful, goal);
     } else {

@@ -10,6 +10,9 @@
 // - Of the open tiles those with the fewest samples make up the next round.
 // - Light that an audit finds and the paths do not (film/unseen_error.h) counts like noise: cells in doubt stay open for a while,
 //   and what no sample can mend is taken off the goal, or, where little would be left of that, ends as a goal that is not claimed.
+// - The bias of the method (film/bias_error.h) is taken off the goal, too; where noise is low enough and bias is not, the tiles
+// with most
+//   of it go on.
 // Every tile's decision is a function of the sums after a whole round, so it depends on no order, machine or clock.
 #pragma once
 
@@ -43,7 +46,8 @@ struct Round {
 Round first_round(const ErrorGoal& goal, PixelRect crop);
 
 struct ErrorLook {
-  // Of sqrt(relMSE), by noise with 95 % confidence over all looks and by light that an audit missed; infinite below two samples.
+  // Of sqrt(relMSE), by noise with 95 % confidence over all looks, by the method's bias and by light that an audit missed; infinite
+  // below two samples.
   double bound = 0;
   std::optional<Round> next;     // nothing: done, or no tile may take more samples
   double samples = 0;            // camera samples of the whole picture when it will be done, as far as can be told

@@ -14,6 +14,8 @@ namespace fluxfarm {
 namespace {
 
 constexpr char kMagic[8] = {'F', 'L', 'U', 'X', 'F', 'L', 'M', '2'};
+// In a film file, beside the bits of the light layers.
+constexpr std::uint32_t kBiasedBit = 1u << 31;
 constexpr float kNoDepth = 1e10f;
 
 // Samples 0 .. n-1 fall round-robin into the replicates.
@@ -91,13 +93,15 @@ void read_values(std::ifstream& in, std::vector<T>& values) {
 
 }  // namespace
 
-Film::Film(int width, int height, PixelRect crop, LightLayers layers)
+Film::Film(int width, int height, PixelRect crop, LightLayers layers, bool biased)
     : width_(width),
       height_(height),
       crop_(crop),
       layers_(layers),
+      biased_(biased),
       pixels_(static_cast<std::size_t>(crop.pixels())),
-      layer_sums_(pixels_.size() * layers.size() * 3) {}
+      layer_sums_(pixels_.size() * layers.size() * 3),
+      bias_sums_(biased ? pixels_.size() * kBiasHalves * 3 : 0) {}
 
 void Film::merge(const TileSums& tile) {
   if (!crop_.contains(tile.rect) || tile.radiance.size() != tile.radiance_size() || tile.features.size() != tile.features_size()) {
@@ -108,11 +112,15 @@ void Film::merge(const TileSums& tile) {
     throw Error("tile does not fit the film: light layers " + std::to_string(tile.layers.bits()) + ", expected " +
                 std::to_string(layers_.bits()));
   }
+  if (tile.biased != biased_ || tile.bias_sums.size() != tile.bias_sums_size()) {
+    throw Error("tile does not fit the film: one of them is of a biased method");
+  }
   const std::uint32_t replicates = tile.replicates();
-  const std::size_t layer_values = layers_.size() * 3;
+  const std::size_t layer_values = layers_.size() * 3, bias_values = biased_ ? kBiasHalves * 3 : 0;
   const float* radiance = tile.radiance.data();
   const float* features = tile.features.data();
   const float* layers = tile.layer_sums.data();
+  const float* bias = tile.bias_sums.data();
   for (int y = tile.rect.y; y < tile.rect.y + tile.rect.height; ++y) {
     for (int x = tile.rect.x; x < tile.rect.x + tile.rect.width; ++x) {
       Pixel& p = pixels_[index(x, y)];
@@ -127,6 +135,8 @@ void Film::merge(const TileSums& tile) {
       for (double& feature : p.features) feature += static_cast<double>(*features++);
       double* layer_sum = layer_sums_.data() + index(x, y) * layer_values;
       for (std::size_t i = 0; i < layer_values; ++i) layer_sum[i] += static_cast<double>(*layers++);
+      double* bias_sum = bias_sums_.data() + index(x, y) * bias_values;
+      for (std::size_t i = 0; i < bias_values; ++i) bias_sum[i] += static_cast<double>(*bias++);
       p.samples = tile.samples.end;
     }
   }
@@ -138,7 +148,7 @@ FilmSummary Film::summary() const {
   result.non_finite_samples = non_finite_samples_;
   if (pixels_.empty()) return result;
   result.min_samples = std::numeric_limits<std::uint32_t>::max();
-  double squares = 0;
+  double squares = 0, bias = 0;
   bool has_variance = true;
   for (const Pixel& p : pixels_) {
     const PixelMean m = pixel_mean(p.radiance, p.samples);
@@ -155,7 +165,25 @@ FilmSummary Film::summary() const {
   for (double& mean : result.mean) mean /= count;
   result.mean_samples /= count;
   if (has_variance) result.error_noise = std::sqrt(squares / (3 * count));
+  if (!biased_) {
+    result.error_bias = 0;
+  } else if (result.min_samples >= kBiasHalves) {
+    for (int y = crop_.y; y < crop_.y + crop_.height; ++y) {
+      for (int x = crop_.x; x < crop_.x + crop_.width; ++x) bias += bias_share(x, y);
+    }
+    result.error_bias = std::sqrt(std::max(bias / count, 0.0));
+  }
   return result;
+}
+
+double Film::bias_share(int x, int y) const {
+  const Pixel& p = pixel(x, y);
+  const PixelMean m = pixel_mean(p.radiance, p.samples);
+  const double* sums = bias_sums_.data() + index(x, y) * kBiasHalves * 3;
+  const double odd = p.samples / kBiasHalves, even = p.samples - odd;
+  double share = 0;
+  for (int c = 0; c < 3; ++c) share += sums[c] / even * (sums[3 + c] / odd) / (m.mean[c] * m.mean[c] + 1e-2);
+  return share / 3;
 }
 
 PixelEstimate Film::estimate(int x, int y) const {
@@ -180,6 +208,7 @@ Image Film::image(PixelRect rect, const ImageInfo& info) const {
     const std::string name = kLightLayerNames[static_cast<std::size_t>(layer)];
     for (const char* channel : {".R", ".G", ".B"}) image.channels.push_back({name + channel, {}});
   }
+  if (biased_) image.channels.push_back({"error.bias", {}});
   for (ImageChannel& channel : image.channels) channel.values.reserve(static_cast<std::size_t>(rect.pixels()));
   const std::size_t layer_values = layers_.size() * 3;
   std::uint32_t max_samples = 0;
@@ -198,6 +227,12 @@ Image Film::image(PixelRect rect, const ImageInfo& info) const {
       put(p.samples);
       const double* layer_sum = layer_sums_.data() + index(x, y) * layer_values;
       for (std::size_t i = 0; i < layer_values; ++i) put(layer_sum[i] * scale);
+      if (biased_) {
+        const double* bias = bias_sums_.data() + index(x, y) * kBiasHalves * 3;
+        double luminance = 0;
+        for (std::size_t c = 0; c < 3; ++c) luminance += kLuminance[c] * (bias[c] + bias[3 + c]);
+        put(std::fabs(luminance) * scale);
+      }
       max_samples = std::max(max_samples, p.samples);
     }
   }
@@ -224,10 +259,11 @@ void Film::save(const std::filesystem::path& path) const {
   std::ofstream out(path, std::ios::binary);
   out.write(kMagic, sizeof kMagic);
   for (const int value : {width_, height_, crop_.x, crop_.y, crop_.width, crop_.height}) write_value(out, value);
-  write_value(out, layers_.bits());
+  write_value(out, layers_.bits() | (biased_ ? kBiasedBit : 0));
   write_value(out, non_finite_samples_);
   write_values(out, pixels_);
   write_values(out, layer_sums_);
+  write_values(out, bias_sums_);
   out.flush();
   if (!out) throw ResourceError(path.string() + ": cannot write the film, is the disk full?");
 }
@@ -242,13 +278,16 @@ Film Film::load(const std::filesystem::path& path) {
   for (int* value : {&width, &height, &crop.x, &crop.y, &crop.width, &crop.height}) read_value(in, *value);
   std::uint32_t layers = 0;
   read_value(in, layers);
+  const bool biased = (layers & kBiasedBit) != 0;
+  layers &= ~kBiasedBit;
   if (!in || crop.empty() || LightLayers(layers).bits() != layers || !PixelRect{0, 0, width, height}.contains(crop)) {
     throw ResourceError(path.string() + ": damaged film header");
   }
-  Film film(width, height, crop, LightLayers(layers));
+  Film film(width, height, crop, LightLayers(layers), biased);
   read_value(in, film.non_finite_samples_);
   read_values(in, film.pixels_);
   read_values(in, film.layer_sums_);
+  read_values(in, film.bias_sums_);
   if (!in) throw ResourceError(path.string() + ": film file is cut short");
   return film;
 }

@@ -31,6 +31,8 @@ struct FilmSummary {
   double mean_samples = 0;  // per pixel
   // sqrt of the estimated relMSE, mean over pixels and channels of Var(I) / (I^2 + 1e-2); absent below two replicates.
   std::optional<double> error_noise;
+  // The same of the method's bias; 0 for a method without one, absent below two samples of one that has.
+  std::optional<double> error_bias;
   double mean[3] = {0, 0, 0};
   std::uint64_t non_finite_samples = 0;
 };
@@ -51,30 +53,35 @@ struct PixelEstimate {
 class Film {
  public:
   // Holds the pixels of `crop` of a width x height frame, with those light layers.
-  Film(int width, int height, PixelRect crop, LightLayers layers = {});
+  // `biased`: made by a method that has a bias and says so.
+  Film(int width, int height, PixelRect crop, LightLayers layers = {}, bool biased = false);
 
   // Reads what save() wrote. Throws ResourceError when the file cannot be read or is not a film.
   static Film load(const std::filesystem::path& path);
   void save(const std::filesystem::path& path) const;
 
-  // Adds one tile's sums. The tile must lie in the crop, have the film's layers and carry on where its pixels' samples end: Error
-  // otherwise.
-  // Threads may merge disjoint tiles at the same time.
+  // Adds one tile's sums. The tile must lie in the crop, have the film's layers and bias and carry on where its pixels' samples
+  // end: Error otherwise. Threads may merge disjoint tiles at the same time.
   void merge(const TileSums& tile);
 
   FilmSummary summary() const;
   // The pixel at (x, y) of the frame, R G B. No standard error below two replicates.
   PixelEstimate estimate(int x, int y) const;
   std::uint32_t samples(int x, int y) const { return pixel(x, y).samples; }
-  // Layers R G B, the light layers, albedo.*, N.*, Z, error.noise, samples of `rect` (inside the crop), with header attributes.
-  // error.noise is the standard error of the pixel's Rec.709 luminance; infinite below two replicates: no claim.
-  // Z is the mean depth of the samples that hit something, 1e10 where none did.
+  // What the pixel at (x, y) of the frame adds to the relMSE by bias, the mean over channels of b^2 / (I^2 + 1e-2): an unbiased
+  // estimate, which may be negative. From two samples on, of a biased film.
+  double bias_share(int x, int y) const;
+  // Layers R G B, the light layers, albedo.*, N.*, Z, error.noise, samples and, if biased, error.bias of `rect` (inside the crop),
+  // with header attributes. error.noise is the standard error of the pixel's Rec.709 luminance; infinite below two replicates: no
+  // claim. error.bias is the luminance of the estimated bias without its sign; it is noisy. Z is the mean depth of the samples that
+  // hit something, 1e10 where none did.
   Image image(PixelRect rect, const ImageInfo& info) const;
 
   int width() const { return width_; }
   int height() const { return height_; }
   PixelRect crop() const { return crop_; }
   LightLayers layers() const { return layers_; }
+  bool biased() const { return biased_; }
   // Sum of one replicate of the pixel at (x, y) of the frame; for tests and tools.
   Rgb replicate_mean(int x, int y, std::uint32_t replicate) const;
 
@@ -91,9 +98,11 @@ class Film {
   int width_, height_;
   PixelRect crop_;
   LightLayers layers_;
+  bool biased_;
   std::uint64_t non_finite_samples_ = 0;
   std::vector<Pixel> pixels_;
   std::vector<double> layer_sums_;  // [pixel][layers_.list()][R G B]
+  std::vector<double> bias_sums_;   // [pixel][kBiasHalves][R G B]; empty unless biased_
 };
 
 }  // namespace fluxfarm

@@ -19,6 +19,9 @@ inline constexpr std::uint32_t kFilmReplicates = 8;
 // Features of the first hit, summed: albedo R G B, shading normal x y z, depth along the view axis (m), number of hits.
 inline constexpr int kFeatures = 8;
 
+// Estimates of bias are kept in two independent halves: the mean of their product has no noise of its own in it.
+inline constexpr std::uint32_t kBiasHalves = 2;
+
 struct TileSums {
   PixelRect rect;
   SampleRange samples;
@@ -32,10 +35,14 @@ struct TileSums {
   // Radiance once more, by layers and without replicates: [pixel][layers.list()][R G B].
   LightLayers layers = {};
   std::vector<float> layer_sums = {};
+  // What a biased method says of its bias, for samples of even and of odd index: [pixel][kBiasHalves][R G B]; empty if it has none.
+  bool biased = false;
+  std::vector<float> bias_sums = {};
 
   std::uint32_t replicates() const { return std::min(samples.size(), kFilmReplicates); }
   std::size_t radiance_size() const { return static_cast<std::size_t>(rect.pixels()) * replicates() * 3; }
   std::size_t features_size() const { return static_cast<std::size_t>(rect.pixels()) * kFeatures; }
+  std::size_t bias_sums_size() const { return biased ? static_cast<std::size_t>(rect.pixels()) * kBiasHalves * 3 : 0; }
   std::size_t layer_sums_size() const { return static_cast<std::size_t>(rect.pixels()) * layers.size() * 3; }
 };
 

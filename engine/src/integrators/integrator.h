@@ -5,12 +5,16 @@
 #pragma once
 
 #include <array>
+#include <atomic>
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <string>
+#include <vector>
 
 #include "accel/ray_queries.h"
 #include "film/light_layer.h"
+#include "film/pixel_rect.h"
 #include "math/rgb.h"
 #include "math/vec.h"
 #include "scene/scene.h"
@@ -28,6 +32,8 @@ struct SampleResult {
   Rgb radiance;  // W m^-2 sr^-1
   // Of it, by LightLayer; the indirect layer is left black: it is what the others leave over, and most light of a path is indirect.
   std::array<Rgb, kLightLayers> layers;
+  // What a biased method adds to radiance in the mean, as far as this sample tells: a signed, noisy estimate of the same unit.
+  Rgb bias;
   Rgb albedo;       // of the first hit; of an emitter without reflection, black
   Vec3f normal;     // shading normal of the first hit, world, turned towards the camera
   float depth = 0;  // of the first hit along the view axis, m
@@ -39,21 +45,44 @@ struct SampleResult {
   }
 };
 
+// What all samples of one pass share, made before the first of them: photon maps. Immutable.
+class PreparedPass {
+ public:
+  virtual ~PreparedPass() = default;
+  virtual std::uint64_t rays() const = 0;  // that it took
+};
+
 class Integrator {
  public:
   virtual ~Integrator() = default;
 
-  // Builds what the method needs for this scene. Called once, before any radiance().
+  virtual const char* name() const = 0;
+  // Whether results have a bias that is more than rounding, and say so in SampleResult::bias.
+  virtual bool biased() const { return false; }
+
+  // Whether it finds light of delta emitters over delta lobes, which no path that starts at the camera can.
+  virtual bool finds_caustics() const { return false; }
+
+  // Builds what the method needs for this scene. Called once, before anything below.
   virtual void prepare(const Scene& scene) = 0;
 
+  // What radiance() of any of these samples needs; null for a method that needs nothing. It depends on the scene, the seed and the
+  // samples alone. Throws ResourceError, and CancelledError soon after `cancelled` becomes true.
+  virtual std::unique_ptr<const PreparedPass> prepare_pass(std::uint64_t seed, SampleRange samples, int threads,
+                                                           const std::atomic<bool>& cancelled) const;
+
   // Estimates the radiance of each sample, in the order given: whole blocks of pixels one after another, in each the samples of
-  // one pixel together, equally many of all (integrators/pixel_blocks.h). The results of a block depend on the scene, the seed and
-  // the block's samples alone. Safe to call from many threads, each with its own queries.
-  virtual void radiance(std::span<const CameraSample> samples, std::uint64_t seed, std::span<SampleResult> results,
-                        RayQueries& queries) const = 0;
+  // one pixel together, equally many of all (integrators/pixel_blocks.h). `pass` comes from prepare_pass() of this seed and these
+  // samples. The results of a block depend on the scene, the seed and the block's samples alone. Safe to call from many threads,
+  // each with its own queries.
+  virtual void radiance(std::span<const CameraSample> samples, std::uint64_t seed, const PreparedPass* pass,
+                        std::span<SampleResult> results, RayQueries& queries) const = 0;
 };
 
-// The method of that name ("path"), or SettingError that names those there are. "" takes the scene's own.
+// Those that make_integrator() knows, besides "auto".
+const std::vector<std::string>& integrator_names();
+
+// The method of that name, or SettingError that names those there are. "" takes the scene's own.
 std::unique_ptr<Integrator> make_integrator(const std::string& name, const Scene& scene);
 
 }  // namespace fluxfarm

@@ -21,7 +21,11 @@ class LightHistory {
   LightLayer layer() const { return state_ == kUnscattered ? LightLayer::kDirect : static_cast<LightLayer>(state_); }
   // Of light that an emitter sends to the surface where the path is, to be scattered there by a continuous lobe.
   LightLayer layer_by_surface() const { return static_cast<LightLayer>(kNext[state_][kContinuous]); }
-  // The same in a medium.
+  // Of light that arrives at the surface after scattering by delta lobes alone, or by others, and is scattered there by a
+  // continuous lobe.
+  LightLayer layer_by_caustic() const { return static_cast<LightLayer>(kNext[kNext[state_][kContinuous]][kDelta]); }
+  LightLayer layer_by_indirect() const { return static_cast<LightLayer>(kNext[kNext[state_][kContinuous]][kContinuous]); }
+  // The same as layer_by_surface() in a medium.
   LightLayer layer_by_medium() const { return static_cast<LightLayer>(kNext[state_][kInMedium]); }
 
   void scatter_at_surface(const BsdfSample& sample) {

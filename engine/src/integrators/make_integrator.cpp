@@ -1,22 +1,34 @@
 #include "integrators/integrator.h"
 #include "integrators/path/path_integrator.h"
 #include "integrators/path/volume_path_integrator.h"
+#include "integrators/photon/photon_progressive_integrator.h"
 #include "support/error.h"
 
 namespace fluxfarm {
+namespace {
+
+std::unique_ptr<Integrator> unprepared(const std::string& name, const Census& census) {
+  if (name == "photon-progressive") return std::make_unique<PhotonProgressiveIntegrator>();
+  if (name != "path" && name != "auto") {
+    throw SettingError("integrator = \"" + name + "\", expected auto, path or photon-progressive");
+  }
+  if (census.media > 0 || census.null_boundaries) return std::make_unique<VolumePathIntegrator>();
+  return std::make_unique<PathIntegrator>();
+}
+
+}  // namespace
+
+std::unique_ptr<const PreparedPass> Integrator::prepare_pass(std::uint64_t, SampleRange, int, const std::atomic<bool>&) const {
+  return nullptr;
+}
+
+const std::vector<std::string>& integrator_names() {
+  static const std::vector<std::string> names{"path", "photon-progressive"};
+  return names;
+}
 
 std::unique_ptr<Integrator> make_integrator(const std::string& name, const Scene& scene) {
-  const std::string& wanted = name.empty() ? scene.method().integrator : name;
-  if (wanted != "path" && wanted != "auto") {
-    throw SettingError("integrator = \"" + wanted + "\", expected path or auto");
-  }
-  const Census& census = scene.census();
-  std::unique_ptr<Integrator> integrator;
-  if (census.media > 0 || census.null_boundaries) {
-    integrator = std::make_unique<VolumePathIntegrator>();
-  } else {
-    integrator = std::make_unique<PathIntegrator>();
-  }
+  std::unique_ptr<Integrator> integrator = unprepared(name.empty() ? scene.method().integrator : name, scene.census());
   integrator->prepare(scene);
   return integrator;
 }

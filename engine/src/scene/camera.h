@@ -4,6 +4,7 @@
 // glass nor its vignetting is modelled.
 #pragma once
 
+#include <cmath>
 #include <optional>
 
 #include "math/ray.h"
@@ -34,6 +35,8 @@ class Camera {
   // near and the far plane.
   std::optional<Projection> project(Vec3f point, Vec2f u) const;
   bool has_lens() const { return aperture_radius_ > 0; }
+  // What a pixel in the middle of the film sees, side in rad.
+  float pixel_angle() const { return std::sqrt(length(cross(step_x_, step_y_))); }
   // Distance of a point from the camera along the view axis, m.
   float depth(Vec3f point) const { return dot(point - origin_, axis_); }
 

@@ -121,6 +121,7 @@ void encode(const PassMergedReply& r, v1::Reply& out) {
   m.set_max_samples(r.summary.max_samples);
   m.set_mean_samples(r.summary.mean_samples);
   if (r.summary.error_noise) m.set_error_noise(*r.summary.error_noise);
+  if (r.summary.error_bias) m.set_error_bias(*r.summary.error_bias);
   if (r.look) encode(*r.look, m);
   m.set_mean_r(r.summary.mean[0]);
   m.set_mean_g(r.summary.mean[1]);
@@ -189,6 +190,8 @@ std::string encode_tile_sums(const TileSums& sums) {
   message.set_non_finite_samples(sums.non_finite_samples);
   message.set_layers(sums.layers.bits());
   message.set_layer_sums(bytes_of(sums.layer_sums));
+  message.set_biased(sums.biased);
+  message.set_bias_sums(bytes_of(sums.bias_sums));
   return message.SerializeAsString();
 }
 
@@ -202,10 +205,12 @@ TileSums decode_tile_sums(std::string_view bytes, const std::string& where) {
                 floats_of(message.features()),
                 message.non_finite_samples(),
                 LightLayers(message.layers()),
-                floats_of(message.layer_sums())};
+                floats_of(message.layer_sums()),
+                message.biased(),
+                floats_of(message.bias_sums())};
   if (sums.rect.empty() || sums.samples.begin >= sums.samples.end || sums.radiance.size() != sums.radiance_size() ||
       sums.features.size() != sums.features_size() || sums.layers.bits() != message.layers() ||
-      sums.layer_sums.size() != sums.layer_sums_size()) {
+      sums.layer_sums.size() != sums.layer_sums_size() || sums.bias_sums.size() != sums.bias_sums_size()) {
     throw ResourceError(where + ": the tile's sums contradict themselves");
   }
   return sums;

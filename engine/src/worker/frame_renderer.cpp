@@ -41,22 +41,33 @@ bool cut_to_time(SampleRange& pass, double seconds, const TimelinePoint& now) {
 FrameResult render_frame(const Scene& scene, const Integrator& integrator, const FrameSettings& settings,
                          const std::atomic<bool>& cancelled, const std::function<void(const TimelinePoint&)>& after_pass) {
   FrameResult result{
-      Film(scene.film().width, scene.film().height, settings.crop, light_layers(scene.census())), {}, {}, 0, 0, {}, {}};
+      Film(scene.film().width, scene.film().height, settings.crop, light_layers(scene.census()), integrator.biased()),
+      {},
+      {},
+      0,
+      0,
+      {},
+      {}};
   const Goal& goal = settings.goal;
   const std::vector<PixelRect> tiles = make_tiles(settings.crop, goal.rel_error ? kErrorTile : settings.tile_size);
   std::vector<RayQueries> queries(static_cast<std::size_t>(settings.threads), RayQueries(scene.accelerator()));
   const Clock::time_point start = Clock::now();
   std::optional<LightAudit> audit;
-  if (goal.rel_error) audit = audit_light(scene, settings.crop, settings.seed, settings.threads, cancelled);
+  if (goal.rel_error) {
+    audit = audit_light(scene, settings.crop, settings.seed, settings.threads, cancelled, integrator.finds_caustics());
+  }
   std::optional<Round> round = begin(settings, tiles.size());
   for (int number = 1; round; ++number) {
     std::optional<ErrorLook> look;
     for (std::uint32_t done = round->samples.begin; done < round->samples.end;) {
       SampleRange pass = next_pass(done, round->samples.end);
       if (goal.seconds && !result.timeline.empty() && !cut_to_time(pass, *goal.seconds, result.timeline.back())) break;
+      const std::unique_ptr<const PreparedPass> prepared =
+          integrator.prepare_pass(settings.seed, pass, settings.threads, cancelled);
+      if (prepared) result.rays += prepared->rays();
       parallel_for(round->tiles.size(), settings.threads, [&](std::size_t index, int thread) {
         prepare_render_thread();
-        const TileTask task{tiles[round->tiles[index]], pass, settings.seed};
+        const TileTask task{tiles[round->tiles[index]], pass, settings.seed, prepared.get()};
         // Tiles are disjoint: threads write to different pixels of the film, and only the counter is shared.
         result.film.merge(render_tile(scene, integrator, task, queries[static_cast<std::size_t>(thread)], cancelled));
       });

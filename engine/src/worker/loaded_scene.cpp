@@ -25,20 +25,30 @@ std::shared_ptr<const LoadedScene> load_scene(const LoadSceneRequest& request, i
   info.height = film.height;
   info.scene_spp = description.samples_per_pixel;
   info.crop = film.crop_width > 0 ? PixelRect{film.crop_x, film.crop_y, film.crop_width, film.crop_height} : full;
-  info.integrator = "path";
+  info.integrator = loaded->integrator->name();
   info.warnings = loaded->scene.warnings();
-  info.plan_json = plan_json(loaded->scene);
+  info.plan_json = plan_json(loaded->scene, *loaded->integrator);
   info.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return loaded;
 }
 
-LightAudit AuditMemory::find(const Scene& scene, PixelRect crop, std::uint64_t seed, int threads,
+LightAudit AuditMemory::find(const Scene& scene, const Integrator& integrator, PixelRect crop, std::uint64_t seed, int threads,
                              const std::atomic<bool>& cancelled) {
   const std::lock_guard lock(mutex_);
   if (!made_ || made_->crop != crop || made_->seed != seed) {
-    made_ = Made{crop, seed, audit_light(scene, crop, seed, threads, cancelled)};
+    made_ = Made{crop, seed, audit_light(scene, crop, seed, threads, cancelled, integrator.finds_caustics())};
   }
   return made_->audit;
+}
+
+std::shared_ptr<const PreparedPass> PassMemory::find(const Integrator& integrator, std::uint64_t seed, SampleRange samples,
+                                                     int threads, const std::atomic<bool>& cancelled) {
+  const std::lock_guard lock(mutex_);
+  if (!made_ || made_->seed != seed || made_->samples != samples) {
+    made_.reset();  // before the next one takes its memory
+    made_ = Made{seed, samples, integrator.prepare_pass(seed, samples, threads, cancelled)};
+  }
+  return made_->pass;
 }
 
 SceneFuture SceneStore::find(const SceneKey& key) {

@@ -27,12 +27,13 @@ void merge_tiles(Film& film, std::span<const std::filesystem::path> tiles) {
   for (const std::filesystem::path& path : tiles) film.merge(read_tile_file(path));
 }
 
-// The film that the request's tiles are merged into. A new one takes its light layers from the first tile.
+// The film that the request's tiles are merged into. A new one takes its light layers and bias from the first tile.
 template <typename Request>
 Film first_film(const Request& request, PixelRect crop) {
   if (!request.film_in.empty()) return Film::load(request.film_in);
-  const LightLayers layers = request.tiles.empty() ? LightLayers() : read_tile_file(request.tiles.front()).layers;
-  return Film(request.width, request.height, crop, layers);
+  if (request.tiles.empty()) return Film(request.width, request.height, crop);
+  const TileSums first = read_tile_file(request.tiles.front());
+  return Film(request.width, request.height, crop, first.layers, first.biased);
 }
 
 }  // namespace

@@ -15,13 +15,13 @@ std::string count(std::size_t number, const char* noun) { return std::to_string(
 
 }  // namespace
 
-std::string plan_json(const Scene& scene) {
+std::string plan_json(const Scene& scene, const Integrator& integrator) {
   const Census& census = scene.census();
   const std::size_t emitters =
       census.area_emitters + census.point_emitters + census.spot_emitters + census.directional_emitters + census.environment_map;
   const AuditNeed audit = audit_need(scene);
   const nlohmann::json plan = {
-      {"integrator", "path"},
+      {"integrator", integrator.name()},
       {"census",
        {{"shapes", census.shapes},
         {"triangles", census.triangles},

@@ -3,11 +3,12 @@
 
 #include <string>
 
+#include "integrators/integrator.h"
 #include "scene/scene.h"
 
 namespace fluxfarm {
 
 // A JSON object {"integrator", "census": {...}, "parts": [{"part", "on", "reason"}]}.
-std::string plan_json(const Scene& scene);
+std::string plan_json(const Scene& scene, const Integrator& integrator);
 
 }  // namespace fluxfarm

@@ -23,8 +23,9 @@ class PixelSums {
 
   void clear() { sums_ = {}; }
 
-  void add(const SampleResult& result, std::uint32_t slot) {
+  void add(const SampleResult& result, std::uint32_t slot, std::uint32_t bias_half) {
     add_to(sums_.radiance[slot], result.radiance);
+    add_to(sums_.bias[bias_half], result.bias);
     for (const LightLayer layer : summed_) add_to(sums_.layers[index_of(layer)], result.layers[index_of(layer)]);
     if (!result.hit) return;
     const float values[kFeatures] = {result.albedo.r, result.albedo.g, result.albedo.b, result.normal.x,
@@ -40,6 +41,9 @@ class PixelSums {
     write(sums_.features, tile.features.data() + index * kFeatures);
     float* layers = tile.layer_sums.data() + index * kept_.size() * 3;
     for (const LightLayer layer : kept_) layers = write(sums_.layers[index_of(layer)], layers);
+    if (!tile.biased) return;
+    float* bias = tile.bias_sums.data() + index * kBiasHalves * 3;
+    for (const Sum& half : sums_.bias) bias = write(half, bias);
   }
 
  private:
@@ -76,6 +80,7 @@ class PixelSums {
     std::array<Sum, kFilmReplicates> radiance{};
     std::array<double, kFeatures> features{};
     std::array<Sum, kLightLayers> layers{};
+    std::array<Sum, kBiasHalves> bias{};
   } sums_;
 };
 
@@ -87,10 +92,11 @@ TileSums render_tile(const Scene& scene, const Integrator& integrator, const Til
   if (!frame.contains(task.rect) || task.rect.empty() || task.samples.begin >= task.samples.end) {
     throw SettingError("tile outside the frame or without samples");
   }
-  TileSums sums{task.rect, task.samples, task.seed, {}, {}, 0, light_layers(scene.census()), {}};
+  TileSums sums{task.rect, task.samples, task.seed, {}, {}, 0, light_layers(scene.census()), {}, integrator.biased(), {}};
   sums.radiance.resize(sums.radiance_size());
   sums.features.resize(sums.features_size());
   sums.layer_sums.resize(sums.layer_sums_size());
+  sums.bias_sums.resize(sums.bias_sums_size());
 
   const std::size_t per_pixel = task.samples.size();
   std::vector<CameraSample> batch;
@@ -103,18 +109,19 @@ TileSums render_tile(const Scene& scene, const Integrator& integrator, const Til
     pixel.clear();
     for (std::size_t k = 0; k < per_pixel; ++k) {
       SampleResult& result = results[first + k];
-      if (!is_finite(result.radiance)) {
+      if (!is_finite(result.radiance) || !is_finite(result.bias)) {
         result.radiance = {};
         result.layers = {};
+        result.bias = {};
         ++sums.non_finite_samples;
       }
-      pixel.add(result, static_cast<std::uint32_t>(k % kFilmReplicates));
+      pixel.add(result, static_cast<std::uint32_t>(k % kFilmReplicates), batch[first + k].index % kBiasHalves);
     }
     pixel.write_to(sums, static_cast<std::size_t>(at.y - task.rect.y) * task.rect.width + (at.x - task.rect.x));
   };
   const auto flush = [&] {
     if (cancelled.load(std::memory_order_relaxed)) throw CancelledError();
-    integrator.radiance(batch, task.seed, results, queries);
+    integrator.radiance(batch, task.seed, task.pass, results, queries);
     std::uint64_t pixels = 0;
     for (std::size_t first = 0; first < batch.size(); first += per_pixel) {
       if (!task.rect.contains({batch[first].x, batch[first].y, 1, 1})) continue;

@@ -15,6 +15,7 @@ struct TileTask {
   PixelRect rect;
   SampleRange samples;
   std::uint64_t seed = 0;
+  const PreparedPass* pass = nullptr;  // of the method, for these samples or more of the same pass
 };
 
 // The sums depend on the scene, the method and the task alone. `progress` is told of each batch's number of samples, on the calling

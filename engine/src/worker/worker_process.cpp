@@ -130,7 +130,8 @@ class Worker {
     start(id, [this, scene, request = std::move(request)](const std::atomic<bool>& cancelled) -> ReplyBody {
       if (!scene.valid()) return merger_.merge(request);
       const LoadedScene& loaded = *scene.get();
-      const LightAudit audit = loaded.audits->find(loaded.scene, request.crop, request.info.seed, threads_, cancelled);
+      const LightAudit audit =
+          loaded.audits->find(loaded.scene, *loaded.integrator, request.crop, request.info.seed, threads_, cancelled);
       return merger_.merge(request, &audit);
     });
   }
@@ -183,9 +184,11 @@ class Worker {
       const LoadedScene& loaded = *scene.get();
       const Clock::time_point start = Clock::now();
       RayQueries queries(loaded.scene.accelerator());
-      const TileSums sums =
-          render_tile(loaded.scene, *loaded.integrator, {request.tiles[tile], request.samples, request.seed}, queries,
-                      running.cancelled, [&](std::uint64_t samples) { tell_progress(id, running, samples); });
+      const std::shared_ptr<const PreparedPass> pass =
+          loaded.passes->find(*loaded.integrator, request.seed, request.samples, threads_, running.cancelled);
+      const TileTask task{request.tiles[tile], request.samples, request.seed, pass.get()};
+      const TileSums sums = render_tile(loaded.scene, *loaded.integrator, task, queries, running.cancelled,
+                                        [&](std::uint64_t samples) { tell_progress(id, running, samples); });
       const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
       if (!running.cancelled) {
         const std::uint64_t bytes = write_tile_file(request.file(tile), sums);

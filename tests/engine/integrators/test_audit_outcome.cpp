@@ -79,12 +79,13 @@ TEST(AuditOutcome, EndsWhenItIsCancelled) {
   const std::atomic<bool> cancelled{true};
   const Scene scene(wide_view(room_with_a_bulb(), 50), 1);
   EXPECT_THROW(audit_light(scene, kFrame, 3, 2, cancelled), CancelledError);
+  const auto integrator = make_integrator("path", scene);
   AuditMemory memory;
-  EXPECT_THROW(memory.find(scene, kFrame, 3, 2, cancelled), CancelledError);
+  EXPECT_THROW(memory.find(scene, *integrator, kFrame, 3, 2, cancelled), CancelledError);
   // Nothing of it is kept: the next one is whole.
-  const LightAudit next = memory.find(scene, kFrame, 3, 2, kNever);
+  const LightAudit next = memory.find(scene, *integrator, kFrame, 3, 2, kNever);
   EXPECT_EQ(next.cells[0].radiance, audit_light(scene, kFrame, 3, 2, kNever).cells[0].radiance);
-  EXPECT_NO_THROW(memory.find(scene, kFrame, 3, 2, cancelled)) << "that one is kept, and costs nothing";
+  EXPECT_NO_THROW(memory.find(scene, *integrator, kFrame, 3, 2, cancelled)) << "that one is kept, and costs nothing";
 }
 
 // Flux beyond all numbers is not followed, and leaves no share that is no number.

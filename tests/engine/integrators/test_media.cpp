@@ -310,7 +310,7 @@ TEST(VolumePath, FeaturesLookThroughNullBoundaries) {
   std::vector<CameraSample> samples;
   for (std::uint32_t i = 0; i < 64; ++i) samples.push_back({1, 1, i});
   std::vector<SampleResult> results(samples.size());
-  integrator->radiance(samples, 1, results, queries);
+  integrator->radiance(samples, 1, nullptr, results, queries);
   int unscattered = 0;
   for (const SampleResult& result : results) {
     if (!result.hit) continue;

@@ -32,6 +32,7 @@ struct Task {
   std::uint64_t seed;
   int threads;
   const std::atomic<bool>& cancelled;
+  bool finds_caustics;
 
   void check() const {
     if (cancelled.load(std::memory_order_relaxed)) throw CancelledError();
@@ -98,7 +99,7 @@ class GroupSums {
 };
 
 std::vector<GroupSums> trace_particles(const Task& task, std::uint32_t particles) {
-  const ParticleTracer tracer(task.scene, task.seed, particles);
+  const ParticleTracer tracer(task.scene, task.seed, particles, task.finds_caustics);
   const Grid grid(task.crop);
   std::vector<GroupSums> groups(kGroups, GroupSums(make_tiles(task.crop, kErrorTile).size()));
   parallel_for(kGroups, task.threads, [&](std::size_t group, int) {
@@ -166,7 +167,8 @@ AuditNeed audit_need(const Scene& scene) {
   return {AuditNeed::kNeeded, "for an error goal: particles from the emitters look for light that paths miss"};
 }
 
-LightAudit audit_light(const Scene& scene, PixelRect crop, std::uint64_t seed, int threads, const std::atomic<bool>& cancelled) {
+LightAudit audit_light(const Scene& scene, PixelRect crop, std::uint64_t seed, int threads, const std::atomic<bool>& cancelled,
+                       bool finds_caustics) {
   const AuditNeed need = audit_need(scene);
   LightAudit audit;
   if (need.kind == AuditNeed::kNotPossible) {
@@ -177,7 +179,7 @@ LightAudit audit_light(const Scene& scene, PixelRect crop, std::uint64_t seed, i
   audit.cells.resize(rects.size());
   if (need.kind == AuditNeed::kNotNeeded) return audit;
 
-  const Task task{scene, crop, seed, threads, cancelled};
+  const Task task{scene, crop, seed, threads, cancelled, finds_caustics};
   const std::int64_t pixels = crop.pixels();
   const auto particles = static_cast<std::uint32_t>(std::clamp(pixels / kPixelsToAParticle, kLeastParticles, kMostParticles));
   double arrived = 0, arrived_unreachable = 0;

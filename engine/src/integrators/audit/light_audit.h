@@ -27,7 +27,9 @@ struct AuditNeed {
 AuditNeed audit_need(const Scene& scene);
 
 // The audit of the part `crop` of the frame; of a scene that needs none, one that finds nothing; where it is not possible, one
-// without cells that says so. Depends on the first three alone. Throws CancelledError soon after `cancelled` becomes true.
-LightAudit audit_light(const Scene& scene, PixelRect crop, std::uint64_t seed, int threads, const std::atomic<bool>& cancelled);
+// without cells that says so. `finds_caustics`: as the method's answer, by which no light counts as unreachable. Depends on the
+// first three and on it alone. Throws CancelledError soon after `cancelled` becomes true.
+LightAudit audit_light(const Scene& scene, PixelRect crop, std::uint64_t seed, int threads, const std::atomic<bool>& cancelled,
+                       bool finds_caustics = false);
 
 }  // namespace fluxfarm

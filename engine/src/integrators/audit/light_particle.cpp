@@ -31,10 +31,11 @@ struct ParticleTracer::Particle {
   KeyRandom random;
 };
 
-ParticleTracer::ParticleTracer(const Scene& scene, std::uint64_t seed, std::uint32_t particles)
+ParticleTracer::ParticleTracer(const Scene& scene, std::uint64_t seed, std::uint32_t particles, bool finds_caustics)
     : scene_(scene),
       seed_(seed),
       particles_(particles),
+      finds_caustics_(finds_caustics),
       max_depth_(scene.method().max_depth < 0 ? std::numeric_limits<int>::max() : scene.method().max_depth),
       source_(scene, shares_of(scene)) {}
 
@@ -65,8 +66,8 @@ void ParticleTracer::trace(std::uint32_t index, RayQueries& queries, ParticleTra
 
     const std::optional<ScatteredFlux> scatter = scatter_flux(vertex, -particle.ray.direction, particle.random);
     if (!scatter) return;
-    // Next-event estimation alone finds a delta light, and never over a delta lobe.
-    if (bounces == 1 && particle.delta_emitter && scatter->delta) particle.unreachable = true;
+    // Of paths next-event estimation alone finds a delta light, and never over a delta lobe.
+    if (bounces == 1 && particle.delta_emitter && scatter->delta && !finds_caustics_) particle.unreachable = true;
     particle.flux *= scatter->share;
     if (!is_finite(particle.flux)) return;
     const float survival = std::min(max_component(particle.flux) / begun_with, kMaxSurvival);

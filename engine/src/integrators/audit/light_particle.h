@@ -17,7 +17,7 @@ struct PathVertex;
 struct Splat {
   float x, y;        // in pixels from the film's top left corner
   float radiance;    // mean over R, G, B, summed over the pixels: divide by the number of particles and pixels. W m^-2 sr^-1
-  bool unreachable;  // no path from the camera can find this light
+  bool unreachable;  // the method cannot find this light
 };
 
 struct ParticleTrace {
@@ -35,7 +35,7 @@ struct ParticleTrace {
 class ParticleTracer {
  public:
   // Emitters are chosen half evenly, half in proportion to power: dim ones count where they alone shine.
-  ParticleTracer(const Scene& scene, std::uint64_t seed, std::uint32_t particles);
+  ParticleTracer(const Scene& scene, std::uint64_t seed, std::uint32_t particles, bool finds_caustics);
 
   // Follows particle `index` of so many. The result depends on the scene, the seed and the index alone. Safe to call from many
   // threads, each with its own queries.
@@ -48,6 +48,7 @@ class ParticleTracer {
   const Scene& scene_;
   const std::uint64_t seed_;
   const std::uint32_t particles_;
+  const bool finds_caustics_;
   const int max_depth_;
   ParticleSource source_;
 };

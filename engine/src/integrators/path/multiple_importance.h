@@ -20,12 +20,13 @@ inline float power_heuristic(float pdf, float other_pdf) {
 
 // Light from outside that a ray finds whose direction was chosen with `pdf` (sr^-1; unused if next-event estimation could not have
 // found that direction: `delta`). Next-event estimation could have found that of the map, too, but never the constant one.
-inline Rgb environment_found(const Scene& scene, Vec3f direction, bool delta, float pdf) {
+// `map_share`: the part of the map's light that is to be found in this way at all.
+inline Rgb environment_found(const Scene& scene, Vec3f direction, bool delta, float pdf, float map_share = 1) {
   Rgb found = scene.environment().value_or(Rgb{});
   const auto& [map, choice_probability] = scene.environment_map();
   if (map == nullptr) return found;
   const auto [radiance, light_pdf] = map->from(direction);
-  return found + radiance * (delta ? 1.0f : power_heuristic(pdf, light_pdf * choice_probability));
+  return found + radiance * (map_share * (delta ? 1.0f : power_heuristic(pdf, light_pdf * choice_probability)));
 }
 
 // The ray from a point, already moved off its surface, to one that is moved off the light. Empty: they coincide.

@@ -18,9 +18,10 @@ namespace fluxfarm {
 
 class PathIntegrator final : public Integrator {
  public:
+  const char* name() const override { return "path"; }
   void prepare(const Scene& scene) override { scene_ = &scene; }
-  void radiance(std::span<const CameraSample> samples, std::uint64_t seed, std::span<SampleResult> results,
-                RayQueries& queries) const override;
+  void radiance(std::span<const CameraSample> samples, std::uint64_t seed, const PreparedPass* pass,
+                std::span<SampleResult> results, RayQueries& queries) const override;
 
  private:
   const Scene* scene_ = nullptr;

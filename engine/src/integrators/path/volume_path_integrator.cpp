@@ -263,8 +263,8 @@ class VolumePathGroup {
 
 }  // namespace
 
-void VolumePathIntegrator::radiance(std::span<const CameraSample> samples, std::uint64_t seed, std::span<SampleResult> results,
-                                    RayQueries& queries) const {
+void VolumePathIntegrator::radiance(std::span<const CameraSample> samples, std::uint64_t seed, const PreparedPass*,
+                                    std::span<SampleResult> results, RayQueries& queries) const {
   VolumePathGroup group(*scene_, queries);
   for_each_group(samples, results,
                  [&](std::span<const CameraSample> block, std::span<SampleResult> out) { group.trace(block, seed, out); });

@@ -70,10 +70,9 @@ async def report(job_id: JobId, farm: Farm) -> ReportOut:
         rays_per_second=record.rays / running_s if running_s > 0 else None,
         non_finite_samples=record.non_finite_samples,
         seconds=await _seconds_by_state(farm, record),
-        # Path tracing has no bias of its own.
         error={
             "noise": None if record.newest is None else record.newest.error_noise,
-            "bias": 0.0,
+            "bias": None if record.newest is None else record.newest.error_bias,
             # Only what was merged at the end of a round was looked at.
             "unseen": next((r.error_unseen for r in reversed(revisions) if r.error_unseen is not None), None),
         },

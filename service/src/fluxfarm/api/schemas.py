@@ -144,6 +144,7 @@ class RevisionOut(BaseModel):
     revision: int
     samples: int = Field(description="Samples per pixel, the fewest of any pixel.")
     error_noise: float | None
+    error_bias: float | None = Field(description="Estimated relative error by the method's own bias; 0: it has none.")
     seconds: float = Field(description="Time in RUNNING when it was published.")
     sha256: str
     bytes: int
@@ -229,6 +230,7 @@ def revision_out(revision: Revision) -> RevisionOut:
         revision=revision.number,
         samples=revision.min_samples,
         error_noise=revision.error_noise,
+        error_bias=revision.error_bias,
         seconds=round(revision.running_s, 6),
         sha256=revision.exr,
         bytes=revision.exr_bytes,

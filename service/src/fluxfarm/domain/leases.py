@@ -158,6 +158,7 @@ class Merged:
     max_samples: int
     mean_samples: float
     error_noise: float | None
+    error_bias: float | None
     mean: tuple[float, float, float]
     non_finite_samples: int
     seconds: float

@@ -45,6 +45,7 @@ class SceneFacts:
 class Revision:
     """A published image. Digests name files of the job; `film` is None where none was written, or a newer one is.
 
+    `error_bias` is that of the method: 0 where it has none, None where too few samples tell of it.
     Where an error goal was decided, `error_bound` is the bound that may end the job, `next_round` what follows (None:
     no tile may take more samples, or the goal is reached) and `samples_expected` the camera samples of the whole job.
     `error_unseen` is the part of the bound by light that paths did not find (None: not audited), and `unseen_warning`
@@ -57,6 +58,7 @@ class Revision:
     max_samples: int
     mean_samples: float
     error_noise: float | None
+    error_bias: float | None
     mean: tuple[float, float, float]
     non_finite_samples: int
     running_s: float

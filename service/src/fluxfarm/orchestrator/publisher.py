@@ -29,6 +29,7 @@ async def publish(
         max_samples=merged.max_samples,
         mean_samples=merged.mean_samples,
         error_noise=merged.error_noise,
+        error_bias=merged.error_bias,
         mean=merged.mean,
         non_finite_samples=merged.non_finite_samples,
         running_s=running_s,

@@ -206,6 +206,7 @@ def _merged(work: MergeLease, body: pb.PassMerged) -> Merged:
         max_samples=body.max_samples,
         mean_samples=body.mean_samples,
         error_noise=body.error_noise if body.HasField("error_noise") else None,
+        error_bias=body.error_bias if body.HasField("error_bias") else None,
         mean=(body.mean_r, body.mean_g, body.mean_b),
         non_finite_samples=body.non_finite_samples,
         seconds=body.seconds,

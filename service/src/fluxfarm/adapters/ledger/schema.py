@@ -106,6 +106,11 @@ MIGRATIONS: tuple[str, ...] = (
     ALTER TABLE revisions ADD COLUMN error_unseen REAL;
     ALTER TABLE revisions ADD COLUMN unseen_warning TEXT
     """,
+    """
+    ALTER TABLE revisions ADD COLUMN error_bias REAL;
+    -- All were path traced.
+    UPDATE revisions SET error_bias = 0
+    """,
 )
 
 metadata = MetaData()
@@ -137,6 +142,6 @@ revisions = _table(
     "job_id number",
     "job_id exr png film next_round unseen_warning",
     "number passes min_samples max_samples non_finite_samples exr_bytes",
-    "mean_samples samples_expected error_noise error_bound error_unseen mean_r mean_g mean_b running_s at",
+    "mean_samples samples_expected error_noise error_bias error_bound error_unseen mean_r mean_g mean_b running_s at",
 )
 events = _table("events", "job_id seq", "job_id kind data", "seq", "at")

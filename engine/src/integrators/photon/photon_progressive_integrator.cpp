@@ -1,0 +1,28 @@
+#include "integrators/photon/photon_progressive_integrator.h"
+
+#include "integrators/path/path_group.h"
+#include "integrators/photon/caustic_maps.h"
+#include "integrators/photon/caustic_photons.h"
+#include "integrators/photon/photon_tracer.h"
+
+namespace fluxfarm {
+
+void PhotonProgressiveIntegrator::prepare(const Scene& scene) {
+  const PhotonTracer checked(scene, {.photons = 1});
+  scene_ = &scene;
+}
+
+std::unique_ptr<const PreparedPass> PhotonProgressiveIntegrator::prepare_pass(std::uint64_t seed, SampleRange samples, int threads,
+                                                                              const std::atomic<bool>& cancelled) const {
+  return std::make_unique<CausticMaps>(*scene_, seed, samples, threads, cancelled);
+}
+
+void PhotonProgressiveIntegrator::radiance(std::span<const CameraSample> samples, std::uint64_t seed, const PreparedPass* pass,
+                                           std::span<SampleResult> results, RayQueries& queries) const {
+  const auto& maps = *static_cast<const CausticMaps*>(pass);
+  PathGroup<CausticPhotons> group(*scene_, {*scene_, maps}, queries);
+  for_each_group(samples, results,
+                 [&](std::span<const CameraSample> block, std::span<SampleResult> out) { group.trace(block, seed, out); });
+}
+
+}  // namespace fluxfarm

@@ -1,0 +1,223 @@
+// Progressive photon mapping as a whole: catalogue C8, C9, P6, and what it shares with all methods.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "integrators/photon_scenes.h"
+#include "support/error.h"
+#include "worker/frame_renderer.h"
+
+namespace fluxfarm {
+namespace {
+
+using testing::cube;
+using testing::kMaxZ;
+using testing::kTwinZ;
+using testing::Measurement;
+using testing::replicated;
+using testing::SceneBuilder;
+
+const std::atomic<bool> kNever{false};
+
+Film render(const Scene& scene, const char* method, std::uint32_t spp, std::uint64_t seed, int threads = 2, int tile = 64) {
+  const PixelRect frame{0, 0, scene.film().width, scene.film().height};
+  const auto integrator = make_integrator(method, scene);
+  return render_frame(scene, *integrator, {frame, tile, threads, seed, {spp, {}, {}}}, kNever).film;
+}
+
+// Of the green channel over the frame; seeds are independent, pixels, which share photons, are not.
+Measurement frame_mean(const SceneDescription& description, const char* method, std::uint32_t spp) {
+  const Scene scene(description, 1);
+  return replicated([&](std::uint64_t seed) { return render(scene, method, spp, seed).summary().mean[1]; });
+}
+
+// Looks at a place, with pixels of so many metres there.
+SceneDescription seen(SceneBuilder builder, const std::array<double, 3>& from, const std::array<double, 3>& at, double pixel,
+                      int side = 4) {
+  builder.look(from, at);
+  SceneDescription description = builder.description();
+  description.film.width = description.film.height = side;
+  const double distance = std::hypot(from[0] - at[0], from[1] - at[1], from[2] - at[2]);
+  description.camera.fov_degrees = static_cast<float>(2 * std::atan(side * pixel / 2 / distance) * 180 / M_PI);
+  return description;
+}
+
+// A lamp 2.5 above a screen, a slab of glass between them from 1 to 1.5 (catalogue C2). Straight through it the irradiance on the
+// axis is 0.169273 for an intensity of one and an index of 1.5.
+constexpr double kAlbedo = 0.5, kSinglePass = 0.169273;
+SceneBuilder slab(float index = 1.5f) {
+  SceneBuilder builder;
+  builder.floor(0, 20, builder.diffuse(static_cast<float>(kAlbedo)));
+  builder.shape(cube(Transform::translate(0, 1.25, 0) * Transform::scale(20, 0.25, 20)), builder.add(DielectricDescription{index}));
+  builder.emitter(SpotEmitterDescription{{0, 2.5f, 0}, {0, -1, 0}, Rgb{1}, 10, 10});
+  return builder;
+}
+
+TEST(PhotonProgressive, C8_CausticSeenThroughGlass) {
+  // The longest path with one passage each way: two surfaces, the screen, two surfaces.
+  const SceneDescription through = seen(slab().max_depth(6), {0.2, 3.5, 0}, {0, 0, 0}, 0.01);
+  const double expected = kSinglePass * kAlbedo / M_PI * 0.9216;
+  const Measurement m = frame_mean(through, "photon-progressive", 32);
+  EXPECT_LT(m.standard_error, 0.005 * expected);
+  EXPECT_NEAR(m.mean, expected, 0.005 * expected + kMaxZ * m.standard_error);
+  EXPECT_GT(m.z(expected / 0.9216), kTwinZ);           // the second passage is not free
+  EXPECT_EQ(frame_mean(through, "path", 16).mean, 0);  // the path tracer never finds it
+}
+
+TEST(PhotonProgressive, PathsAreAsLongAsTheyMayBe) {
+  // Seen from below a slab that reflects a quarter at each face: two surfaces and the screen, and what is reflected on the way
+  // where paths may be longer.
+  const auto below = [](int max_depth) {
+    const SceneDescription description = seen(slab(3).max_depth(max_depth), {0.5, 0.9, 0}, {0, 0, 0}, 0.01);
+    return frame_mean(description, "photon-progressive", 32);
+  };
+  const Measurement single = below(4), all = below(-1);
+  const double expected = 0.75 * 0.75 / std::pow(2 + 0.5 / 3, 2) * kAlbedo / M_PI;
+  EXPECT_EQ(below(3).mean, 0);
+  EXPECT_NEAR(single.mean, expected, 0.005 * expected + kMaxZ * single.standard_error);
+  EXPECT_LT(single.standard_error, 0.01 * expected);
+  EXPECT_GT((all.mean - expected) / all.standard_error, kTwinZ);
+}
+
+// A mirror of that roughness faces a screen and a lamp of that side (0: a point) that shines up at it alone.
+SceneDescription mirror(float alpha, double lamp) {
+  SceneBuilder builder;
+  builder.floor(0, 20, builder.diffuse(static_cast<float>(kAlbedo)));
+  ConductorDescription metal{.perfect = true, .specular_reflectance = Rgb{0.8f}};
+  const int material =
+      alpha > 0 ? builder.add(RoughConductorDescription{metal, {MicrofacetDistribution::kGgx, alpha, alpha}}) : builder.add(metal);
+  builder.shape(
+      RectangleDescription{Transform::translate(0, 1.5, 0) * Transform::rotate(1, 0, 0, 90) * Transform::scale(0.8, 0.8, 1)},
+      material);
+  if (lamp > 0) {
+    builder.shape(RectangleDescription{Transform::translate(0, 0.5, 0) * Transform::rotate(1, 0, 0, -90) *
+                                       Transform::scale(lamp / 2, lamp / 2, 1)},
+                  builder.diffuse(0), static_cast<float>(1 / (lamp * lamp)));
+  } else {
+    builder.emitter(SpotEmitterDescription{{0, 0.5f, 0}, {0, 1, 0}, Rgb{1}, 60, 60});
+  }
+  return seen(builder, {1.2, 0.8, 0}, {0.7, 0, 0}, 0.02);
+}
+
+class RoughMirror : public ::testing::TestWithParam<float> {};
+
+// Whatever the photons carry, both together carry all the light once.
+TEST_P(RoughMirror, C9_PathsAndPhotonsShareTheLight) {
+  const SceneDescription description = mirror(GetParam(), 0.4);
+  const Measurement both = frame_mean(description, "photon-progressive", 256), paths = frame_mean(description, "path", 8192);
+  const double error = std::hypot(both.standard_error, paths.standard_error);
+  EXPECT_LT(error, 0.02 * paths.mean);
+  EXPECT_LT(std::fabs(both.mean - paths.mean) / error, kMaxZ) << both.mean << " for " << paths.mean;
+}
+INSTANTIATE_TEST_SUITE_P(Roughness, RoughMirror, ::testing::Values(0.0f, 0.05f, 0.1f, 0.15f, 0.2f, 0.4f));
+
+// From a mirror to a slightly rough one the caustic of a point light changes little; paths alone lose it at once.
+TEST(PhotonProgressive, C9_NothingJumpsWithRoughness) {
+  const Measurement smooth = frame_mean(mirror(0, 0), "photon-progressive", 64);
+  double last = smooth.mean;
+  for (const float alpha : {0.005f, 0.01f, 0.02f, 0.04f}) {
+    const Measurement rough = frame_mean(mirror(alpha, 0), "photon-progressive", 64);
+    EXPECT_NEAR(rough.mean, last, 0.03 * last + kMaxZ * rough.standard_error) << alpha;
+    last = rough.mean;
+  }
+  EXPECT_EQ(frame_mean(mirror(0, 0), "path", 64).mean, 0);
+  EXPECT_GT(frame_mean(mirror(0.04f, 0), "path", 64).mean, 0.5 * smooth.mean);
+}
+
+// Mean squared error against the closed form over pixels and seeds, relative.
+double squared_error(const Scene& scene, std::uint32_t spp, double expected) {
+  return replicated([&](std::uint64_t seed) {
+           const Film film = render(scene, "photon-progressive", spp, seed);
+           double sum = 0;
+           for (int y = 0; y < film.height(); ++y) {
+             for (int x = 0; x < film.width(); ++x) {
+               sum += std::pow(static_cast<double>(film.estimate(x, y).mean[1]) / expected - 1, 2);
+             }
+           }
+           return sum / (film.width() * film.height());
+         })
+      .mean;
+}
+
+TEST(PhotonProgressive, P6_ErrorFallsWithTheTwoThirdsPower) {
+  // Pixels so small that a photon seldom meets a disk: many in one would be spread more evenly than chance has it.
+  const Scene scene(seen(slab().max_depth(4), {0.5, 0.9, 0}, {0, 0, 0}, 0.002, 16), 1);
+  const double expected = kSinglePass * kAlbedo / M_PI;
+  double sum_x = 0, sum_y = 0, sum_xx = 0, sum_xy = 0;
+  constexpr int kPoints = 4;
+  for (int i = 0; i < kPoints; ++i) {
+    const std::uint32_t spp = 4u << (2 * i);
+    const double x = std::log(spp), y = std::log(squared_error(scene, spp, expected));
+    sum_x += x, sum_y += y, sum_xx += x * x, sum_xy += x * y;
+  }
+  const double slope = (kPoints * sum_xy - sum_x * sum_y) / (kPoints * sum_xx - sum_x * sum_x);
+  EXPECT_NEAR(slope, -2.0 / 3, 0.1);  // neither -1, of a fixed radius, nor 0, of one that shrinks like a pixel's samples
+}
+
+TEST(PhotonProgressive, BitsDependOnNeitherThreadsNorTiles) {
+  const Scene scene(seen(slab(), {0.2, 3.5, 0}, {0, 0, 0}, 0.01, 40), 1);
+  const Film one = render(scene, "photon-progressive", 5, 3, 1, 64), other = render(scene, "photon-progressive", 5, 3, 3, 16);
+  for (int y = 0; y < one.height(); ++y) {
+    for (int x = 0; x < one.width(); ++x) {
+      ASSERT_EQ(one.estimate(x, y).mean, other.estimate(x, y).mean) << x << " " << y;
+      ASSERT_EQ(one.bias_share(x, y), other.bias_share(x, y)) << x << " " << y;
+    }
+  }
+  EXPECT_NE(one.estimate(20, 20).mean, render(scene, "photon-progressive", 5, 4).estimate(20, 20).mean);
+}
+
+// What the second radius says of the bias is the bias: at the edge of a spot of light, where it is large.
+TEST(PhotonProgressive, BiasIsKnown) {
+  SceneBuilder builder;
+  builder.floor(0, 3, builder.diffuse(static_cast<float>(kAlbedo)));
+  builder.shape(
+      RectangleDescription{Transform::translate(0, 1.5, 0) * Transform::rotate(1, 0, 0, 90) * Transform::scale(0.5, 0.5, 1)},
+      builder.add(ConductorDescription{.perfect = true}));
+  builder.emitter(SpotEmitterDescription{{0, 0.5f, 0}, {0, 1, 0}, Rgb{1}, 35, 35});
+  // The image of the lamp is 2.5 above the screen, and the mirror ends at 1.25 there.
+  const Scene scene(seen(builder, {0, 1, 0}, {1.25, 0, 0}, 0.02, 8), 1);
+  constexpr std::uint32_t kSpp = 32;
+  double claimed = 0, real = 0, noise = 0;
+  for (std::uint64_t seed = 1; seed <= 16; ++seed) {
+    const Film blurred = render(scene, "photon-progressive", kSpp, seed), sharp = render(scene, "photon-progressive", 512, seed);
+    for (int y = 0; y < 8; ++y) {
+      for (int x = 0; x < 8; ++x) {
+        const double value = static_cast<double>(blurred.estimate(x, y).mean[1]);
+        const double error = value - static_cast<double>(sharp.estimate(x, y).mean[1]);
+        const double variance = std::pow(static_cast<double>(blurred.estimate(x, y).standard_error[1]), 2);
+        claimed += blurred.bias_share(x, y);
+        real += (error * error - variance) / (value * value + 1e-2);
+        noise += variance / (value * value + 1e-2);
+      }
+    }
+  }
+  EXPECT_GT(real, 0.25 * noise);  // otherwise this tests nothing
+  EXPECT_GT(std::sqrt(claimed / real), 0.7);
+  EXPECT_LT(std::sqrt(claimed / real), 2);
+}
+
+TEST(PhotonProgressive, ScenesThatMakeNoSenseSaySo) {
+  const auto refused = [](SceneBuilder& builder) -> std::string {
+    const Scene scene(builder.look({0, 1, 1}, {0, 0, 0}).description(), 1);
+    try {
+      make_integrator("photon-progressive", scene);
+    } catch (const SettingError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  SceneBuilder dark;
+  dark.floor(0, 1, dark.diffuse(0.5f));
+  EXPECT_NE(refused(dark).find("nothing in the scene emits light"), std::string::npos);
+  SceneBuilder smooth;
+  smooth.floor(0, 1, smooth.add(ConductorDescription{.perfect = true}));
+  smooth.emitter(PointEmitterDescription{{0, 1, 0}, Rgb{1}});
+  EXPECT_NE(refused(smooth).find("all surfaces of the scene are smooth"), std::string::npos);
+  SceneBuilder fog;
+  fog.floor(0, 1, fog.diffuse(0.5f)).emitter(PointEmitterDescription{{0, 1, 0}, Rgb{1}});
+  fog.camera_in(fog.medium({}));
+  EXPECT_NE(refused(fog).find("participating media"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace fluxfarm
