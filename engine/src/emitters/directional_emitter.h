@@ -20,6 +20,9 @@ class DirectionalEmitter final : public Emitter {
     sample.delta = true;
     return sample;
   }
+  EmissionBounds emission_bounds(const EmissionCell& cell, Vec3f scene_center) const override {
+    return bounds_emitted_from_outside({direction_, 0}, scene_center, scene_radius_, cell.point);
+  }
   std::optional<EmitterBounds> bounds() const override { return std::nullopt; }
   // What falls on the disk that the scene's sphere shows to the light.
   Rgb power() const override { return irradiance_ * (kPi * scene_radius_ * scene_radius_); }

@@ -9,6 +9,7 @@
 #include <limits>
 #include <optional>
 
+#include "emitters/emission_bounds.h"
 #include "emitters/emitter_bounds.h"
 #include "geometry/shape.h"
 #include "math/ray.h"
@@ -57,6 +58,8 @@ class Emitter {
   // Chooses a ray that light leaves on; both u in [0,1)^2. Light from outside starts on the far side of a sphere around
   // `scene_center`. Empty: no light leaves there.
   virtual std::optional<EmissionSample> emit(Vec2f u_point, Vec2f u_direction, Vec3f scene_center) const = 0;
+  // Holds every ray that emit() chooses for the random numbers of a cell.
+  virtual EmissionBounds emission_bounds(const EmissionCell& cell, Vec3f scene_center) const = 0;
   virtual Rgb power() const = 0;  // W; of light from outside, what the scene can catch
   // Of its surface, m^2; 0 for a point and for light from outside.
   virtual float area() const { return 0; }
@@ -105,6 +108,9 @@ class AreaEmitter final : public Emitter {
   ApparentSize apparent_size(const SurfacePoint& point, Vec3f wi) const {
     return {area() * std::fabs(dot(point.geometric_normal, wi)), 0};
   }
+  EmissionBounds emission_bounds(const EmissionCell& cell, Vec3f) const override {
+    return bounds_emitted_by(shape_.area_bounds(cell.point), both_sides_, cell.direction);
+  }
   std::optional<EmitterBounds> bounds() const override;
 
   // Radiance that leaves `point` towards -wi, where wi is the direction in which the point is seen. Zero on a back that is dark.
@@ -128,6 +134,9 @@ class PointEmitter final : public Emitter {
 
   std::optional<EmitterSample> sample(Vec3f reference, Vec2f u) const override;
   std::optional<EmissionSample> emit(Vec2f u_point, Vec2f u_direction, Vec3f scene_center) const override;
+  EmissionBounds emission_bounds(const EmissionCell& cell, Vec3f) const override {
+    return {NearRays({position_, 0}, cap_cone(cell.direction, 2))};
+  }
   Rgb power() const override { return intensity_ * (4 * kPi); }
   std::optional<EmitterBounds> bounds() const override;
 

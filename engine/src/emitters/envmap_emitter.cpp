@@ -23,6 +23,11 @@ std::optional<EmissionSample> EnvmapEmitter::emit(Vec2f u_point, Vec2f u_directi
   return emitted_from_outside(-seen->wi, seen->weight, 1 / seen->pdf_solid_angle, scene_center, scene_radius_, u_point);
 }
 
+EmissionBounds EnvmapEmitter::emission_bounds(const EmissionCell& cell, Vec3f scene_center) const {
+  const Cone seen = distribution_.cone(cell.direction);
+  return bounds_emitted_from_outside({-frame_.to_world(seen.axis), seen.half_angle}, scene_center, scene_radius_, cell.point);
+}
+
 Rgb EnvmapEmitter::power() const {
   Rgb irradiance;  // summed over all directions
   for (int row = 0; row + 1 < image_.height; ++row) {

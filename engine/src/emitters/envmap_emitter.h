@@ -18,6 +18,7 @@ class EnvmapEmitter final : public Emitter {
   // The same from every reference point.
   std::optional<EmitterSample> sample(Vec3f reference, Vec2f u) const override;
   std::optional<EmissionSample> emit(Vec2f u_point, Vec2f u_direction, Vec3f scene_center) const override;
+  EmissionBounds emission_bounds(const EmissionCell& cell, Vec3f scene_center) const override;
   Rgb power() const override;
   std::optional<EmitterBounds> bounds() const override { return std::nullopt; }
 

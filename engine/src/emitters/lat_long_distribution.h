@@ -10,6 +10,7 @@
 
 #include "emitters/lat_long_image.h"
 #include "sampling/discrete_distribution.h"
+#include "sampling/warp_bounds.h"
 
 namespace fluxfarm {
 
@@ -23,6 +24,8 @@ class LatLongDistribution {
   };
   // `image`: the one that the distribution was made from.
   Sample sample(const LatLongImage& image, Vec2f u) const;
+  // Holds the directions that sample() chooses for the u of a box.
+  Cone cone(const UnitBox& box) const;
   // Density of the directions of that cell, sr^-1.
   float pdf(const LatLongImage::Cell& cell) const;
 

@@ -16,9 +16,15 @@ std::optional<EmitterSample> SpotEmitter::sample(Vec3f reference, Vec2f) const {
   return EmitterSample{position_, {}, wi, distance, intensity_ * (share / squared), 0, true};
 }
 
+float SpotEmitter::cap_height() const { return 2 * sqr(std::sin(0.5f * cutoff_angle_)); }
+
+EmissionBounds SpotEmitter::emission_bounds(const EmissionCell& cell, Vec3f) const {
+  const Cone local = cap_cone(cell.direction, cap_height());
+  return {NearRays({position_, 0}, {Frame(axis_).to_world(local.axis), local.half_angle})};
+}
+
 std::optional<EmissionSample> SpotEmitter::emit(Vec2f, Vec2f u_direction, Vec3f) const {
-  const float sine = std::sin(0.5f * cutoff_angle_);
-  const float height = 2 * sine * sine;  // 1 - cos(cutoff) with all its digits: narrow cones have few in the cosine
+  const float height = cap_height();
   const Vec3f direction = Frame(axis_).to_world(square_to_uniform_cap(u_direction, height));
   const float share = falloff(direction);
   if (!(share > 0)) return std::nullopt;

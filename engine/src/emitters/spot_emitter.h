@@ -14,6 +14,7 @@ class SpotEmitter final : public Emitter {
 
   std::optional<EmitterSample> sample(Vec3f reference, Vec2f u) const override;
   std::optional<EmissionSample> emit(Vec2f u_point, Vec2f u_direction, Vec3f scene_center) const override;
+  EmissionBounds emission_bounds(const EmissionCell& cell, Vec3f scene_center) const override;
   Rgb power() const override;
   std::optional<EmitterBounds> bounds() const override;
 
@@ -21,6 +22,8 @@ class SpotEmitter final : public Emitter {
   float falloff(Vec3f direction) const;
 
  private:
+  float cap_height() const;  // 1 - cos(cutoff) with all its digits: narrow cones have few in the cosine
+
   Vec3f position_, axis_;
   Rgb intensity_;
   float cutoff_angle_, beam_width_;

@@ -9,6 +9,11 @@ std::optional<EmissionSample> TriangleEmitter::emit(Vec2f, Vec2f, Vec3f) const {
   return std::nullopt;
 }
 
+EmissionBounds TriangleEmitter::emission_bounds(const EmissionCell&, Vec3f) const {
+  FLUXFARM_CHECK(false, "light is followed from a mesh as a whole, never from one triangle of it");
+  return {};
+}
+
 std::optional<EmitterBounds> TriangleEmitter::bounds() const {
   const auto [a, b, c] = mesh_->corners(triangle_);
   EmitterBounds bounds;

@@ -17,6 +17,7 @@ class TriangleEmitter final : public Emitter {
   }
   // Never called: particles leave the mesh as a whole.
   std::optional<EmissionSample> emit(Vec2f, Vec2f, Vec3f) const override;
+  EmissionBounds emission_bounds(const EmissionCell& cell, Vec3f scene_center) const override;
   Rgb power() const override { return radiance_ * ((both_sides_ ? kTwoPi : kPi) * mesh_->triangle_area(triangle_)); }
   // Of the mesh: that of all that it stands for.
   float area() const override { return mesh_->area(); }

@@ -39,6 +39,14 @@ AreaSample Disk::sample_area(Vec2f u) const {
   return {center_ + tangent_ * (r * std::cos(phi)) + bitangent_ * (r * std::sin(phi)), normal_};
 }
 
+AreaBounds Disk::area_bounds(const UnitBox& box) const {
+  const float half_phi = kPi * box.size().y;
+  const DiskBounds part =
+      disk_bounds(Sector{std::sqrt(box.lower.x), std::sqrt(box.upper.x), kTwoPi * box.lower.y + half_phi, half_phi});
+  const Vec3f center = center_ + radius_ * (part.center.x * tangent_ + part.center.y * bitangent_);
+  return {{center, radius_ * part.radius}, {normal_, 0}};
+}
+
 std::optional<ShapeSample> Disk::sample(Vec3f reference, Vec2f u) const {
   const Vec3f position = sample_area(u).position;
   const Vec3f d = position - reference;

@@ -20,6 +20,7 @@ class Disk final : public Shape {
   std::optional<ShapeSample> sample(Vec3f reference, Vec2f u) const override;
   float pdf(Vec3f reference, const SurfacePoint& point, std::uint32_t primitive, Vec3f wi, float distance) const override;
   AreaSample sample_area(Vec2f u) const override;
+  AreaBounds area_bounds(const UnitBox& box) const override;
   float area() const override { return kPi * radius_ * radius_; }
   Bounds bounds() const override;
   std::optional<Vec3f> plane_normal() const override { return normal_; }

@@ -48,6 +48,11 @@ AreaSample MeshInstance::sample_area(Vec2f) const {
   return {};
 }
 
+AreaBounds MeshInstance::area_bounds(const UnitBox&) const {
+  FLUXFARM_CHECK(false, "an instance of a mesh is never sampled as a light");
+  return {};
+}
+
 float MeshInstance::area() const {
   double total = 0;
   for (std::size_t i = 0; i < mesh_.triangles(); ++i) {

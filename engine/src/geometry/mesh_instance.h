@@ -24,6 +24,7 @@ class MeshInstance final : public Shape {
   std::optional<ShapeSample> sample(Vec3f reference, Vec2f u) const override;
   float pdf(Vec3f reference, const SurfacePoint& point, std::uint32_t primitive, Vec3f wi, float distance) const override;
   AreaSample sample_area(Vec2f u) const override;
+  AreaBounds area_bounds(const UnitBox& box) const override;
   float area() const override;
   // The box around the transformed box of the mesh: holds the instance, not always tightly.
   Bounds bounds() const override;

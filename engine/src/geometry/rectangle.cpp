@@ -65,6 +65,13 @@ float Rectangle::pdf(Vec3f reference, const SurfacePoint&, std::uint32_t, Vec3f 
 
 AreaSample Rectangle::sample_area(Vec2f u) const { return {corner_ + u.x * edge_u_ + u.y * edge_v_, normal_}; }
 
+AreaBounds Rectangle::area_bounds(const UnitBox& box) const {
+  const Vec2f s = box.size();
+  const Vec3f u = 0.5f * s.x * edge_u_, v = 0.5f * s.y * edge_v_;
+  const Vec3f center = corner_ + box.lower.x * edge_u_ + box.lower.y * edge_v_ + u + v;
+  return {{center, std::max(length(u + v), length(u - v))}, {normal_, 0}};
+}
+
 Vec3f Rectangle::corner(int i) const {
   return corner_ + (i == 1 || i == 2 ? edge_u_ : Vec3f{}) + (i == 2 || i == 3 ? edge_v_ : Vec3f{});
 }

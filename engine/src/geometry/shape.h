@@ -11,6 +11,7 @@
 #include "math/ray.h"
 #include "math/rgb.h"
 #include "math/vec.h"
+#include "sampling/warp_bounds.h"
 
 namespace fluxfarm {
 
@@ -28,6 +29,12 @@ struct ShapeSample {
 struct AreaSample {
   Vec3f position;
   Vec3f normal;  // unit, front side
+};
+
+// Holds a part of a surface: its points lie in a ball, its normals (front side) in a cone.
+struct AreaBounds {
+  Ball points;
+  Cone normals;
 };
 
 class Shape {
@@ -61,6 +68,8 @@ class Shape {
 
   // Chooses a point of the surface, every part of its area alike; u in [0,1)^2.
   virtual AreaSample sample_area(Vec2f u) const = 0;
+  // Holds all that sample_area() chooses for the u of a box.
+  virtual AreaBounds area_bounds(const UnitBox& box) const = 0;
 
   virtual float area() const = 0;  // m^2
   virtual Bounds bounds() const = 0;

@@ -45,6 +45,16 @@ AreaSample Sphere::sample_area(Vec2f u) const {
   return {center_ + radius_ * outward, inward_ ? -outward : outward};
 }
 
+AreaBounds Sphere::area_bounds(const UnitBox& box) const {
+  const float half_phi = kPi * box.size().y;
+  Cone outward =
+      polar_cone({std::acos(1 - 2 * box.lower.x), std::acos(1 - 2 * box.upper.x), kTwoPi * box.lower.y + half_phi, half_phi});
+  outward.half_angle = std::min(outward.half_angle + 3e-4f, kPi);  // the digits that sample_area() loses near the poles
+  const Cone normals{inward_ ? -outward.axis : outward.axis, outward.half_angle};
+  if (outward.half_angle >= kPi / 3) return {{center_, radius_}, normals};
+  return {{center_ + radius_ * outward.axis, 2 * radius_ * std::sin(0.5f * outward.half_angle)}, normals};
+}
+
 std::optional<ShapeSample> Sphere::sample(Vec3f reference, Vec2f u) const {
   const Vec3f to_center = center_ - reference;
   const float d2 = length_squared(to_center);

@@ -22,6 +22,7 @@ class Sphere final : public Shape {
   std::optional<ShapeSample> sample(Vec3f reference, Vec2f u) const override;
   float pdf(Vec3f reference, const SurfacePoint& point, std::uint32_t primitive, Vec3f wi, float distance) const override;
   AreaSample sample_area(Vec2f u) const override;
+  AreaBounds area_bounds(const UnitBox& box) const override;
   float area() const override { return 4 * kPi * radius_ * radius_; }
   Bounds bounds() const override;
 

@@ -5,6 +5,30 @@
 #include "geometry/spherical_triangle.h"
 
 namespace fluxfarm {
+namespace {
+
+Ball ball_around(const std::vector<Vec3f>& points) {
+  Bounds box;
+  for (const Vec3f p : points) box.extend(p);
+  Ball ball{box.center(), 0};
+  for (const Vec3f p : points) ball.radius = std::max(ball.radius, length(p - ball.center));
+  return ball;
+}
+
+Cone cone_around(const std::vector<Vec3f>& normals) {
+  Vec3f sum;
+  for (const Vec3f n : normals) sum += n;
+  if (!(length_squared(sum) > 0)) return {};
+  Cone cone{normalize(sum), 0};
+  constexpr float kMargin = 4e-6f;  // for rounding
+  for (const Vec3f n : normals) {
+    const float angle = std::atan2(length(cross(n, cone.axis)), dot(n, cone.axis));
+    cone.half_angle = std::max(cone.half_angle, std::min(angle + kMargin, kPi));
+  }
+  return cone;
+}
+
+}  // namespace
 
 TriangleMesh::TriangleMesh(Data data, bool flipped, bool emissive) : data_(std::move(data)), side_(flipped ? -1.0f : 1.0f) {
   data_.positions.reserve(data_.positions.size() + 1);  // ray tracing libraries read 16 bytes at each vertex
@@ -16,7 +40,9 @@ TriangleMesh::TriangleMesh(Data data, bool flipped, bool emissive) : data_(std::
     total += areas[i];
   }
   area_ = static_cast<float>(total);
-  if (emissive) by_area_ = DiscreteDistribution(areas);
+  if (!emissive) return;
+  by_area_ = DiscreteDistribution(areas);
+  ball_ = ball_around(data_.positions);
 }
 
 TriangleMesh::Corners TriangleMesh::corners(std::uint32_t triangle) const {
@@ -94,6 +120,29 @@ std::optional<ShapeSample> TriangleMesh::sample(Vec3f reference, Vec2f u) const 
 AreaSample TriangleMesh::sample_area(Vec2f u) const {
   const DiscreteDistribution::Choice choice = by_area_.sample(u.x);
   return sample_triangle_area(static_cast<std::uint32_t>(choice.index), {choice.u, u.y});
+}
+
+AreaBounds TriangleMesh::area_bounds(const UnitBox& box) const {
+  const DiscreteDistribution::Choice first = by_area_.sample(box.lower.x), last = by_area_.sample(box.last().x);
+  if (first.index == last.index) {  // a piece of one triangle, whose edges are straight
+    const auto triangle = static_cast<std::uint32_t>(first.index);
+    std::vector<Vec3f> corners;
+    for (const float x : {first.u, last.u}) {
+      for (const float y : {box.lower.y, box.upper.y}) corners.push_back(sample_triangle_area(triangle, {x, y}).position);
+    }
+    return {ball_around(corners), {triangle_normal(triangle), 0}};
+  }
+  constexpr std::size_t kMany = 256;  // not worth the time
+  if (last.index - first.index >= kMany) return {ball_, {}};
+  std::vector<Vec3f> points, normals;
+  for (std::size_t i = first.index; i <= last.index; ++i) {
+    const auto triangle = static_cast<std::uint32_t>(i);
+    if (!(triangle_area(triangle) > 0)) continue;
+    const auto [a, b, c] = corners(triangle);
+    points.insert(points.end(), {a, b, c});
+    normals.push_back(triangle_normal(triangle));
+  }
+  return {ball_around(points), cone_around(normals)};
 }
 
 AreaSample TriangleMesh::sample_triangle_area(std::uint32_t triangle, Vec2f u) const {

@@ -30,6 +30,7 @@ class TriangleMesh final : public Shape {
   std::optional<ShapeSample> sample(Vec3f reference, Vec2f u) const override;
   float pdf(Vec3f reference, const SurfacePoint& point, std::uint32_t primitive, Vec3f wi, float distance) const override;
   AreaSample sample_area(Vec2f u) const override;
+  AreaBounds area_bounds(const UnitBox& box) const override;
   float area() const override { return area_; }
   Bounds bounds() const override;
 
@@ -64,6 +65,7 @@ class TriangleMesh final : public Shape {
   float side_;  // -1 when flipped
   float area_ = 0;
   DiscreteDistribution by_area_;
+  Ball ball_;  // around all of it, where it emits
 };
 
 }  // namespace fluxfarm

@@ -1,4 +1,4 @@
-// Axis-aligned box. Default: empty.
+// Axis-aligned box, and ball.
 #pragma once
 
 #include <limits>
@@ -7,6 +7,7 @@
 
 namespace fluxfarm {
 
+// Default: empty.
 struct Bounds {
   Vec3f lower{kInfinity, kInfinity, kInfinity};
   Vec3f upper{-kInfinity, -kInfinity, -kInfinity};
@@ -22,6 +23,11 @@ struct Bounds {
 
  private:
   static constexpr float kInfinity = std::numeric_limits<float>::infinity();
+};
+
+struct Ball {
+  Vec3f center;
+  float radius = 0;
 };
 
 }  // namespace fluxfarm

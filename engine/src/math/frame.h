@@ -13,8 +13,11 @@ struct Frame {
 
   Frame() = default;  // the axes of the world
   // `normal` must have unit length.                                                        [Duff17, listing 3]
-  explicit Frame(Vec3f normal) : n(normal) {
-    const float sign = std::copysign(1.0f, n.z);
+  explicit Frame(Vec3f normal) : Frame(normal, std::copysign(1.0f, normal.z)) {}
+  // The frames jump where n.z changes its sign. These are the ones of the side of `sign`, 1 or -1, and go on smoothly beyond it,
+  // but not to the other pole. They come from the pole by the least turn: where n is t from it, and moves by d, they turn by d /
+  // cos(t / 2) at most.
+  Frame(Vec3f normal, float sign) : n(normal) {
     const float a = -1.0f / (sign + n.z);
     const float b = n.x * n.y * a;
     s = {1.0f + sign * n.x * n.x * a, sign * b, -sign * n.x};
