@@ -51,14 +51,21 @@ std::vector<double> ParticleSource::powers(const Scene& scene) {
   return powers;
 }
 
+std::optional<EmissionSample> ParticleSource::emit_from(const Scene& scene, std::size_t emitter, Vec2f u_point, Vec2f u_direction) {
+  const std::vector<const Emitter*>& emitters = scene.emitter_list();
+  if (emitter < emitters.size()) return emitters[emitter]->emit(u_point, u_direction, scene.center());
+  return emit_environment(scene, u_point, u_direction);
+}
+
+EmissionBounds ParticleSource::bounds(const Scene& scene, std::size_t emitter, const EmissionCell& cell) {
+  const std::vector<const Emitter*>& emitters = scene.emitter_list();
+  if (emitter < emitters.size()) return emitters[emitter]->emission_bounds(cell, scene.center());
+  return bounds_emitted_from_outside(cap_cone(cell.direction, 2), scene.center(), scene.radius(), cell.point);
+}
+
 std::optional<EmissionSample> ParticleSource::emit(double place, Vec2f u_point, Vec2f u_direction) const {
   const DiscreteDistribution::Choice choice = choice_.sample(std::min(static_cast<float>(place), 0x1.fffffep-1f));
-  std::optional<EmissionSample> emission;
-  if (choice.index < scene_.emitter_list().size()) {
-    emission = scene_.emitter_list()[choice.index]->emit(u_point, u_direction, scene_.center());
-  } else {
-    emission = emit_environment(scene_, u_point, u_direction);
-  }
+  std::optional<EmissionSample> emission = emit_from(scene_, choice.index, u_point, u_direction);
   if (emission) emission->flux = emission->flux / choice.probability;
   return emission;
 }

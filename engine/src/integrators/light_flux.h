@@ -24,6 +24,10 @@ class ParticleSource {
   // not followed. Must not be empty.
   ParticleSource(const Scene& scene, const std::vector<double>& weights) : scene_(scene), choice_(weights) {}
 
+  // A ray of one emitter, counted as in powers(), and what holds those of a part of it. As Emitter::emit() and emission_bounds().
+  static std::optional<EmissionSample> emit_from(const Scene& scene, std::size_t emitter, Vec2f u_point, Vec2f u_direction);
+  static EmissionBounds bounds(const Scene& scene, std::size_t emitter, const EmissionCell& cell);
+
   // A ray with the flux that it stands for when it is the only one: divide by their number. `place` in [0,1) picks the emitter, and
   // emitters have their part of that interval in order. Empty: no light leaves there.
   std::optional<EmissionSample> emit(double place, Vec2f u_point, Vec2f u_direction) const;

@@ -13,6 +13,7 @@ struct FluxLedger {
   static constexpr std::size_t kBounces = 32;
 
   double emitted = 0;
+  double left_out = 0;  // never emitted: the part of the emitters' power that a projection map does without
   double absorbed = 0;  // by surfaces: what arrived less what the BSDF's own sampling sent on
   double escaped = 0;   // out of the scene
   double cut = 0;       // by the limit of bounces, or because what comes is not to be stored
@@ -26,6 +27,7 @@ struct FluxLedger {
 
   void add(const FluxLedger& other) {
     emitted += other.emitted;
+    left_out += other.left_out;
     absorbed += other.absorbed;
     escaped += other.escaped;
     cut += other.cut;

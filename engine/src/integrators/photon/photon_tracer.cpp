@@ -38,19 +38,21 @@ double watt(Rgb flux) { return static_cast<double>(mean(flux)); }
 class PhotonTracer::Group {
  public:
   Group(const PhotonTracer& tracer, std::vector<Photon>& stored, FluxLedger& ledger)
-      : scene_(tracer.scene_),
+      : tracer_(tracer),
+        scene_(tracer.scene_),
         settings_(tracer.settings_),
-        source_(tracer.source_),
         sequence_(tracer.settings_.seed),
         stored_(stored),
         ledger_(ledger) {}
 
   void start(std::uint64_t index) {
     KeyRandom random(settings_.seed, KeyRandom::kPhoton, index);
-    const double place =
-        (static_cast<double>(index) + static_cast<double>(random.next_1d())) / static_cast<double>(settings_.photons);
+    const double place = tracer_.place(index, random);
     const EmissionSequence::Point u = sequence_.at(index);
-    const std::optional<EmissionSample> emission = source_.emit(place, u.place, u.direction);
+    const ProjectionMap* projection = tracer_.projection_;
+    if (projection != nullptr) ledger_.left_out += projection->left_out() / static_cast<double>(settings_.photons);
+    const std::optional<EmissionSample> emission =
+        projection != nullptr ? projection->emit(place, u.place, u.direction) : tracer_.source_.emit(place, u.place, u.direction);
     if (!emission) return;
     const Rgb flux = emission->flux / static_cast<float>(settings_.photons);
     if (!(max_component(flux) > 0) || !is_finite(flux)) return;
@@ -136,9 +138,9 @@ class PhotonTracer::Group {
     stored_.push_back({vertex.point.position, light});
   }
 
+  const PhotonTracer& tracer_;
   const Scene& scene_;
   const PhotonSettings& settings_;
-  const ParticleSource& source_;
   const EmissionSequence sequence_;
   std::vector<Photon>& stored_;
   FluxLedger& ledger_;
@@ -154,6 +156,12 @@ PhotonTracer::PhotonTracer(const Scene& scene, const PhotonSettings& settings, c
 
 PhotonTracer::PhotonTracer(const Scene& scene, const PhotonSettings& settings)
     : PhotonTracer(scene, settings, ParticleSource::powers(scene)) {}
+
+PhotonTracer::PhotonTracer(const Scene& scene, const PhotonSettings& settings, const ProjectionMap& projection)
+    : PhotonTracer(scene, settings) {
+  if (projection.empty()) throw SettingError("no emitter of the scene can shine on the surfaces that the photons are for");
+  projection_ = &projection;
+}
 
 void PhotonTracer::trace(std::uint64_t first, std::size_t count, RayQueries& queries, std::vector<Photon>& stored,
                          FluxLedger& ledger) const {

@@ -17,6 +17,7 @@
 #include "integrators/light_flux.h"
 #include "integrators/photon/flux_ledger.h"
 #include "integrators/photon/photon.h"
+#include "integrators/photon/projection_map.h"
 #include "scene/scene.h"
 
 namespace fluxfarm {
@@ -39,6 +40,14 @@ class PhotonTracer {
   PhotonTracer(const Scene& scene, const PhotonSettings& settings, const std::vector<double>& weights);
   // In proportion to power.
   PhotonTracer(const Scene& scene, const PhotonSettings& settings);
+  // From the parts of the emitters that `projection` keeps and with its densities. It must outlive this, and be made for all
+  // surfaces on which light may fall first to become one of the kinds.
+  PhotonTracer(const Scene& scene, const PhotonSettings& settings, const ProjectionMap& projection);
+
+  // Of photon `index`: its place in [0,1) among the emitters. `random` is its own, unused so far.
+  double place(std::uint64_t index, KeyRandom& random) const {
+    return (static_cast<double>(index) + static_cast<double>(random.next_1d())) / static_cast<double>(settings_.photons);
+  }
 
   // Follows photons first ... first + count - 1, count <= kGroup. Appends what they leave, in an order that is fixed.
   void trace(std::uint64_t first, std::size_t count, RayQueries& queries, std::vector<Photon>& stored, FluxLedger& ledger) const;
@@ -49,6 +58,7 @@ class PhotonTracer {
   const Scene& scene_;
   PhotonSettings settings_;
   ParticleSource source_;
+  const ProjectionMap* projection_ = nullptr;  // null: all that is emitted
 };
 
 }  // namespace fluxfarm
