@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <sstream>
 
 #include "film/bias_error.h"
 #include "film/error_bound.h"
@@ -29,8 +30,8 @@ constexpr double kFewCarriers = 64;
 // where later samples find brighter paths, it goes down to 0.
 constexpr double kSlowestFall = 1.0, kFastestFall = 1.3;
 
-// Beyond so many samples a pixel no tile stays open because the audit doubts it (a choice): an event that rare is not worth a wait
-// without an end.
+// Beyond so many samples a pixel no tile stays open because the audit doubts it, or for the method's bias (a choice): neither is
+// worth a wait without an end.
 constexpr std::uint32_t kMostForDoubt = 4096;
 
 struct TileError {
@@ -181,7 +182,15 @@ std::optional<Round> choose_biased(std::vector<TileError> tiles, const std::vect
     tiles[i].cells.scale(0);
     tiles[i].pooled = shares[i];
   }
-  return choose_round(tiles, goal);
+  return choose_round(tiles, goal_for_doubt(goal));
+}
+
+std::string bias_warning(double bias, double goal) {
+  std::ostringstream text;
+  text.precision(2);
+  text << "goal not reached: the method blurs the picture, which leaves a relative error of up to " << bias << " where " << goal
+       << " was asked; ask for integrator photon-progressive or path, or for a larger error";
+  return text.str();
 }
 
 // What follows because the audit doubts tiles of a picture whose noise is low enough.
@@ -212,7 +221,7 @@ Round first_round(const ErrorGoal& goal, PixelRect crop) {
   return round;
 }
 
-ErrorLook look_at(const Film& film, const ErrorGoal& goal, int number, const LightAudit* audit) {
+ErrorLook look_at(const Film& film, const ErrorGoal& goal, int number, const LightAudit* audit, bool bias_falls) {
   const PixelRect crop = film.crop();
   const std::vector<PixelRect> rects = make_tiles(crop, kErrorTile);
   std::vector<TileError> tiles;
@@ -238,13 +247,17 @@ ErrorLook look_at(const Film& film, const ErrorGoal& goal, int number, const Lig
     look.next = choose_round(tiles, for_noise);
   } else if (look.bound > goal.rel_error) {
     // Where no sample can save the claim, none is spent on what samples may find.
-    const bool hopeless = unseen.unreachable_error >= goal.rel_error;
-    if (!hopeless && bias.bound > unseen.error) look.next = choose_biased(tiles, bias.shares, goal);
-    if (!hopeless && !look.next) look.next = choose_doubtful(tiles, unseen.doubtful, goal);
+    const bool by_bias = bias.bound > unseen.error;
+    if (unseen.unreachable_error < goal.rel_error && (bias_falls || bias.bound < goal.rel_error)) {
+      if (by_bias && bias_falls) look.next = choose_biased(tiles, bias.shares, goal);
+      if (!look.next) look.next = choose_doubtful(tiles, unseen.doubtful, goal);
+    }
     if (look.next) {
       look.samples += samples_for_doubt(tiles, unseen.doubtful, goal);
     } else {
-      look.warning = look.unseen ? unseen_warning(unseen, goal.rel_error) : unclaimed_warning();
+      look.warning = by_bias       ? bias_warning(bias.bound, goal.rel_error)
+                     : look.unseen ? unseen_warning(unseen, goal.rel_error)
+                                   : unclaimed_warning();
     }
   } else if (outcome != LightAudit::kAudited) {
     look.warning = unaudited_warning();

@@ -58,6 +58,7 @@ struct ErrorLook {
 
 // The decision after round `number` (1, 2, ...).
 // Without an `audit` light that was never sampled goes unnoticed, and no warning says so.
-ErrorLook look_at(const Film& film, const ErrorGoal& goal, int number, const LightAudit* audit = nullptr);
+// `bias_falls`: whether more samples lessen the bias of the film's method, if it has one.
+ErrorLook look_at(const Film& film, const ErrorGoal& goal, int number, const LightAudit* audit = nullptr, bool bias_falls = true);
 
 }  // namespace fluxfarm

@@ -57,8 +57,9 @@ class Integrator {
   virtual ~Integrator() = default;
 
   virtual const char* name() const = 0;
-  // Whether results have a bias that is more than rounding, and say so in SampleResult::bias.
-  virtual bool biased() const { return false; }
+  // A bias that is more than rounding is told in SampleResult::bias; it falls as samples are added, or it does not.
+  enum class Bias { kNone, kFalling, kFixed };
+  virtual Bias bias() const { return Bias::kNone; }
 
   // Whether it finds light of delta emitters over delta lobes, which no path that starts at the camera can.
   virtual bool finds_caustics() const { return false; }
@@ -68,7 +69,7 @@ class Integrator {
 
   // What radiance() of any of these samples needs; null for a method that needs nothing. It depends on the scene, the seed and the
   // samples alone. Throws ResourceError, and CancelledError soon after `cancelled` becomes true.
-  virtual std::unique_ptr<const PreparedPass> prepare_pass(std::uint64_t seed, SampleRange samples, int threads,
+  virtual std::shared_ptr<const PreparedPass> prepare_pass(std::uint64_t seed, SampleRange samples, int threads,
                                                            const std::atomic<bool>& cancelled) const;
 
   // Estimates the radiance of each sample, in the order given: whole blocks of pixels one after another, in each the samples of

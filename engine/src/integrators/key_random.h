@@ -13,7 +13,7 @@ namespace fluxfarm {
 
 class KeyRandom {
  public:
-  enum Kind : std::uint64_t { kParticle = 0x6c69676874, kProbe = 0x70726f6265, kPhoton = 0x70686f746f6e };
+  enum Kind : std::uint64_t { kParticle = 0x6c69676874, kProbe = 0x70726f6265, kPhoton = 0x70686f746f6e, kLabel = 0x6c6162656c };
 
   KeyRandom(std::uint64_t seed, Kind kind, std::uint64_t index) : key_(hash_words(seed, static_cast<std::uint64_t>(kind), index)) {}
 

@@ -1,6 +1,7 @@
 #include "integrators/integrator.h"
 #include "integrators/path/path_integrator.h"
 #include "integrators/path/volume_path_integrator.h"
+#include "integrators/photon/photon_integrator.h"
 #include "integrators/photon/photon_progressive_integrator.h"
 #include "support/error.h"
 
@@ -8,9 +9,10 @@ namespace fluxfarm {
 namespace {
 
 std::unique_ptr<Integrator> unprepared(const std::string& name, const Census& census) {
+  if (name == "photon") return std::make_unique<PhotonIntegrator>();
   if (name == "photon-progressive") return std::make_unique<PhotonProgressiveIntegrator>();
   if (name != "path" && name != "auto") {
-    throw SettingError("integrator = \"" + name + "\", expected auto, path or photon-progressive");
+    throw SettingError("integrator = \"" + name + "\", expected auto, path, photon or photon-progressive");
   }
   if (census.media > 0 || census.null_boundaries) return std::make_unique<VolumePathIntegrator>();
   return std::make_unique<PathIntegrator>();
@@ -18,12 +20,12 @@ std::unique_ptr<Integrator> unprepared(const std::string& name, const Census& ce
 
 }  // namespace
 
-std::unique_ptr<const PreparedPass> Integrator::prepare_pass(std::uint64_t, SampleRange, int, const std::atomic<bool>&) const {
+std::shared_ptr<const PreparedPass> Integrator::prepare_pass(std::uint64_t, SampleRange, int, const std::atomic<bool>&) const {
   return nullptr;
 }
 
 const std::vector<std::string>& integrator_names() {
-  static const std::vector<std::string> names{"path", "photon-progressive"};
+  static const std::vector<std::string> names{"path", "photon", "photon-progressive"};
   return names;
 }
 

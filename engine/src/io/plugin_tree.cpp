@@ -39,6 +39,8 @@ struct KnownPlugin {
 constexpr KnownPlugin kKnownPlugins[] = {
     {"scene", PluginKind::kScene},
     {"path", PluginKind::kIntegrator},
+    {"photon", PluginKind::kIntegrator},
+    {"photon-progressive", PluginKind::kIntegrator},
     {"perspective", PluginKind::kSensor},
     {"independent", PluginKind::kSampler},
     {"stratified", PluginKind::kSampler},

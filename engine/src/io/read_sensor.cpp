@@ -118,10 +118,14 @@ MethodDescription read_integrator(const PluginNode& integrator) {
   Properties properties(integrator);
   MethodDescription method;
   // With or without media: whether there are any is seen in the scene.
-  method.integrator = "path";
+  const bool photon = integrator.type == "photon", progressive = integrator.type == "photon-progressive";
+  method.integrator = photon || progressive ? integrator.type : "path";
   method.max_depth = static_cast<int>(properties.integer("max_depth", -1, kInt32));
   method.rr_depth = static_cast<int>(properties.integer("rr_depth", 5, {1, 2147483647}));
   method.hide_emitters = properties.boolean("hide_emitters", false);
+  if (photon || progressive) method.photons = static_cast<std::uint64_t>(properties.integer("photons", 0, {1, 1 << 28}));
+  if (photon) method.final_gather = properties.boolean("final_gather", true);
+  if (progressive) method.first_radius = properties.number("radius", method.first_radius, {1e-3, 1e3});
   if (integrator.type == "volpathmis") properties.ignore({"use_spectral_mis"});
   properties.finish();
   return method;

@@ -12,27 +12,33 @@ class Collector {
 
   void operator()(const DiffuseDescription& d) { texture(d.reflectance_texture); }
   void operator()(const DielectricDescription& d) {
-    needs_.delta_lobes = true;
+    needs_.delta_lobes = needs_.glossy = true;
     textures(d);
   }
   void operator()(const ConductorDescription& d) {
-    needs_.delta_lobes = true;
+    needs_.delta_lobes = needs_.glossy = true;
     texture(d.specular_reflectance_texture);
   }
   void operator()(const RoughConductorDescription& d) {
+    needs_.glossy = true;
     texture(d.conductor.specular_reflectance_texture);
     roughness(d.roughness);
   }
   void operator()(const RoughDielectricDescription& d) {
+    needs_.glossy = true;
     textures(d.dielectric);
     roughness(d.roughness);
   }
   void operator()(const PlasticDescription& d) {
-    needs_.delta_lobes = true;
+    needs_.delta_lobes = needs_.glossy = true;
     textures(d);
   }
-  void operator()(const RoughPlasticDescription& d) { textures(d.plastic); }
+  void operator()(const RoughPlasticDescription& d) {
+    needs_.glossy = true;
+    textures(d.plastic);
+  }
   void operator()(const PrincipledDescription& d) {
+    needs_.glossy = true;
     texture(d.base_color_texture);
     for (const ScalarParameter* p : {&d.roughness, &d.anisotropic, &d.metallic, &d.spec_trans, &d.spec_tint, &d.sheen,
                                      &d.sheen_tint, &d.flatness, &d.clearcoat, &d.clearcoat_gloss}) {
@@ -42,6 +48,7 @@ class Collector {
     needs_.tangents |= needs_.anisotropic;
   }
   void operator()(const GltfDescription& d) {
+    needs_.glossy = true;
     for (const int index :
          {d.base_color_texture, d.metallic_roughness_texture, d.transmission_texture, d.specular_texture, d.specular_color_texture,
           d.clearcoat_texture, d.clearcoat_roughness_texture, d.sheen_color_texture, d.sheen_roughness_texture}) {
@@ -68,13 +75,13 @@ class Collector {
     held(d.second);
   }
   void operator()(const NormalMapDescription& d) {
-    needs_.normal_maps = needs_.tangents = true;
+    needs_.glossy = needs_.normal_maps = needs_.tangents = true;
     needs_.uv_derivatives |= d.y_against_v;
     texture(d.normals_texture);
     held(d.material);
   }
   void operator()(const BumpMapDescription& d) {
-    needs_.normal_maps = needs_.tangents = needs_.uv_derivatives = true;
+    needs_.glossy = needs_.normal_maps = needs_.tangents = needs_.uv_derivatives = true;
     texture(d.height_texture);
     held(d.material);
   }

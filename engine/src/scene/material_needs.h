@@ -16,6 +16,7 @@ struct MaterialNeeds {
   bool vertex_colors = false;
   bool masks = false;        // light goes straight through, in part or everywhere
   bool delta_lobes = false;  // some light is scattered into single directions
+  bool glossy = false;       // or less evenly than by a diffuse surface
 };
 
 // `material`: index into the description's materials, which do not contain themselves.

@@ -83,8 +83,8 @@ Scene::Scene(const SceneDescription& description, int threads)
     census_.normal_maps |= needs.normal_maps;
     census_.vertex_colors |= needs.vertex_colors;
     census_.masks |= needs.masks;
-    surface.has_delta_lobe = needs.delta_lobes;
-    census_.delta_lobes |= surface.has_delta_lobe;
+    surface.glossy = needs.glossy;
+    census_.delta_lobes |= needs.delta_lobes;
     const bool null = is_null(description.materials[static_cast<std::size_t>(shape.material)]);
     census_.null_boundaries |= null;
     census_.delta_materials |= !surface.has_continuous_lobe && !shape.emitted_radiance && !null;

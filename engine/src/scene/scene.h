@@ -59,7 +59,7 @@ class Scene {
     bool bumpy = false, vertex_colored = false;
     // The material's answers to the questions of the same name.
     bool has_continuous_lobe = false, chooses_lobe = false;
-    bool has_delta_lobe = false;  // scatters some light into single directions
+    bool glossy = false;  // scatters some light less evenly than a diffuse surface: into single directions, or around them
   };
 
   // Compiles a description whose film has the final size. `threads` build the ray accelerator; 0 takes all.

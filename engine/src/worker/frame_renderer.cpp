@@ -40,14 +40,14 @@ bool cut_to_time(SampleRange& pass, double seconds, const TimelinePoint& now) {
 
 FrameResult render_frame(const Scene& scene, const Integrator& integrator, const FrameSettings& settings,
                          const std::atomic<bool>& cancelled, const std::function<void(const TimelinePoint&)>& after_pass) {
-  FrameResult result{
-      Film(scene.film().width, scene.film().height, settings.crop, light_layers(scene.census()), integrator.biased()),
-      {},
-      {},
-      0,
-      0,
-      {},
-      {}};
+  FrameResult result{Film(scene.film().width, scene.film().height, settings.crop, light_layers(scene.census()),
+                          integrator.bias() != Integrator::Bias::kNone),
+                     {},
+                     {},
+                     0,
+                     0,
+                     {},
+                     {}};
   const Goal& goal = settings.goal;
   const std::vector<PixelRect> tiles = make_tiles(settings.crop, goal.rel_error ? kErrorTile : settings.tile_size);
   std::vector<RayQueries> queries(static_cast<std::size_t>(settings.threads), RayQueries(scene.accelerator()));
@@ -62,7 +62,7 @@ FrameResult render_frame(const Scene& scene, const Integrator& integrator, const
     for (std::uint32_t done = round->samples.begin; done < round->samples.end;) {
       SampleRange pass = next_pass(done, round->samples.end);
       if (goal.seconds && !result.timeline.empty() && !cut_to_time(pass, *goal.seconds, result.timeline.back())) break;
-      const std::unique_ptr<const PreparedPass> prepared =
+      const std::shared_ptr<const PreparedPass> prepared =
           integrator.prepare_pass(settings.seed, pass, settings.threads, cancelled);
       if (prepared) result.rays += prepared->rays();
       parallel_for(round->tiles.size(), settings.threads, [&](std::size_t index, int thread) {
@@ -75,7 +75,8 @@ FrameResult render_frame(const Scene& scene, const Integrator& integrator, const
       result.summary = result.film.summary();
       TimelinePoint point{seconds_since(start), result.summary.mean_samples, result.summary.error_noise, {}, {}};
       if (goal.rel_error && done == round->samples.end) {
-        look = look_at(result.film, {*goal.rel_error, kUnbounded}, number, audit ? &*audit : nullptr);
+        look = look_at(result.film, {*goal.rel_error, kUnbounded}, number, audit ? &*audit : nullptr,
+                       integrator.bias() != Integrator::Bias::kFixed);
         result.error_unseen = look->unseen;
         if (!look->warning.empty()) result.warnings.push_back(look->warning);
         point.error_bound = look->bound;

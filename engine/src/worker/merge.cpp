@@ -55,7 +55,7 @@ void PassMerger::forget() {
   kept_.reset();
 }
 
-PassMergedReply PassMerger::merge(const MergePassRequest& request, const LightAudit* audit) {
+PassMergedReply PassMerger::merge(const MergePassRequest& request, const LightAudit* audit, bool bias_falls) {
   const auto begin = std::chrono::steady_clock::now();
   std::optional<KeptFilm> kept = take(request);
   const std::size_t merged = kept ? kept->tiles.size() : 0;
@@ -76,7 +76,7 @@ PassMergedReply PassMerger::merge(const MergePassRequest& request, const LightAu
       },
       [&] { reply.summary = film.summary(); },
       [&] {
-        if (request.decision) reply.look = look_at(film, request.decision->goal, request.decision->round, audit);
+        if (request.decision) reply.look = look_at(film, request.decision->goal, request.decision->round, audit, bias_falls);
       },
   };
   // At the end of a job nothing else is left to do, and its owner waits.

@@ -14,7 +14,7 @@ class PassMerger {
  public:
   // Throws ResourceError when a file cannot be read or written, Error when tiles do not follow the film.
   // A decision hears the `audit` of the scene, if there is one.
-  PassMergedReply merge(const MergePassRequest& request, const LightAudit* audit = nullptr);
+  PassMergedReply merge(const MergePassRequest& request, const LightAudit* audit = nullptr, bool bias_falls = true);
   // Gives back the memory of the kept film.
   void forget();
 

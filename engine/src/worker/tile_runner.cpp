@@ -92,7 +92,9 @@ TileSums render_tile(const Scene& scene, const Integrator& integrator, const Til
   if (!frame.contains(task.rect) || task.rect.empty() || task.samples.begin >= task.samples.end) {
     throw SettingError("tile outside the frame or without samples");
   }
-  TileSums sums{task.rect, task.samples, task.seed, {}, {}, 0, light_layers(scene.census()), {}, integrator.biased(), {}};
+  TileSums sums{
+      task.rect, task.samples, task.seed, {}, {}, 0, light_layers(scene.census()), {}, integrator.bias() != Integrator::Bias::kNone,
+      {}};
   sums.radiance.resize(sums.radiance_size());
   sums.features.resize(sums.features_size());
   sums.layer_sums.resize(sums.layer_sums_size());

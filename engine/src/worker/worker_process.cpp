@@ -132,7 +132,7 @@ class Worker {
       const LoadedScene& loaded = *scene.get();
       const LightAudit audit =
           loaded.audits->find(loaded.scene, *loaded.integrator, request.crop, request.info.seed, threads_, cancelled);
-      return merger_.merge(request, &audit);
+      return merger_.merge(request, &audit, loaded.integrator->bias() != Integrator::Bias::kFixed);
     });
   }
   void handle(std::uint64_t id, WriteTileRequest request) {

@@ -27,7 +27,7 @@ PhotonSettings caustic(std::uint64_t photons, std::uint64_t seed) {
   return {.photons = photons, .seed = seed, .kinds = PhotonKind::kCaustic};
 }
 
-ProjectionMap caustic_projection(const Scene& scene) { return {scene, bounding_balls(scene, specular_shapes(scene))}; }
+ProjectionMap caustic_projection(const Scene& scene) { return {scene, bounding_balls(scene, glossy_shapes(scene))}; }
 
 ProjectionMap measured_projection(const Scene& scene) {
   ProjectionMap map = caustic_projection(scene);
@@ -184,7 +184,7 @@ Masked masked_rays(const Scene& scene, const ProjectionMap& map) {
     if (!emission) continue;
     Hit hit;
     queries.intersect({&emission->ray, 1}, {&hit, 1}, false);
-    if (hit.shape == Hit::kNone || !scene.surface(hit.shape).has_delta_lobe) continue;
+    if (hit.shape == Hit::kNone || !scene.surface(hit.shape).glossy) continue;
     ++result.met;
     result.masked += !kept(map, emitter, point, direction);
   }
@@ -194,7 +194,7 @@ Masked masked_rays(const Scene& scene, const ProjectionMap& map) {
 TEST(ProjectionMap, MasksNoRayThatMeetsWhatItIsFor) {
   for (const EmitterCase& c : emitter_cases()) {
     const Scene scene(c.scene, 1);
-    std::vector<Ball> balls = bounding_balls(scene, specular_shapes(scene));
+    std::vector<Ball> balls = bounding_balls(scene, glossy_shapes(scene));
     const Masked right = masked_rays(scene, {scene, balls});
     EXPECT_GT(right.met, 500) << c.name;
     EXPECT_EQ(right.masked, 0) << c.name << ": of " << right.met;
@@ -291,7 +291,7 @@ TEST(ProjectionMap, CoversAPaneClosely) {
   SceneBuilder b;
   b.floor(0, 5, b.add(DielectricDescription{1.5f}));
   const Scene scene(b.description(), 1);
-  const std::vector<Ball> balls = bounding_balls(scene, specular_shapes(scene));
+  const std::vector<Ball> balls = bounding_balls(scene, glossy_shapes(scene));
   std::mt19937 generator(3);
   std::uniform_real_distribution<float> place(-5, 5);
   for (int i = 0; i < 10000; ++i) {

@@ -52,8 +52,9 @@ TEST(BadScene, UnknownPluginsAreErrors) {
             "roughconductor, plastic, roughplastic, principled, thindielectric, null, mask, blendbsdf, normalmap, bumpmap");
   EXPECT_EQ(error_of([&] { folder.read_xml("<volume type=\"gridvolume\"/>"); }),
             "scene.xml:2: unknown plugin: volume \"gridvolume\"; no volume is supported yet");
-  EXPECT_EQ(error_of([&] { folder.read_xml("<integrator type=\"bdpt\"/>"); }),
-            "scene.xml:2: unknown plugin: integrator \"bdpt\", expected one of: path, volpath, volpathmis");
+  EXPECT_EQ(
+      error_of([&] { folder.read_xml("<integrator type=\"bdpt\"/>"); }),
+      "scene.xml:2: unknown plugin: integrator \"bdpt\", expected one of: path, photon, photon-progressive, volpath, volpathmis");
   EXPECT_EQ(error_of([&] { folder.read_xml("<shape type=\"diffuse\"/>"); }).find("scene.xml:2: unknown plugin: shape \"diffuse\""),
             0u);
   EXPECT_EQ(error_of([&] {

@@ -47,6 +47,7 @@ class WithoutPhotons {
   struct State {};
   State start(const CameraSample&) const { return {}; }
   void arrive(State&, float) const {}
+  bool ended(const State&) const { return false; }  // the path sees what emits where it is, and no more
   void gather(const State&, const PathVertex&, int, const Rgb&, const LightHistory&, SampleResult&) {}
   void scatter(State&, const BsdfSample&) const {}
   // Parts that they leave to the path.
@@ -123,7 +124,7 @@ class PathGroup {
     photons_.arrive(path.photons, hit.t);
     if (depth == 0) note_first_hit(scene_.camera(), vertex, *path.result);
     if (vertex.surface->emitter != nullptr && shows_emitters) add_emission(i, vertex);
-    if (depth + 1 >= max_depth_) return false;
+    if (depth + 1 >= max_depth_ || photons_.ended(path.photons)) return false;
     if (vertex.surface->has_continuous_lobe) {
       photons_.gather(path.photons, vertex, max_depth_ - depth, path.throughput, path.history, *path.result);
     }

@@ -86,10 +86,10 @@ std::vector<Triangle> triangles_of(const Shape& shape) {
 
 }  // namespace
 
-std::vector<std::uint32_t> specular_shapes(const Scene& scene) {
+std::vector<std::uint32_t> glossy_shapes(const Scene& scene) {
   std::vector<std::uint32_t> shapes;
   for (std::uint32_t shape = 0; shape < scene.census().shapes; ++shape) {
-    if (scene.surface(shape).has_delta_lobe) shapes.push_back(shape);
+    if (scene.surface(shape).glossy) shapes.push_back(shape);
   }
   return shapes;
 }

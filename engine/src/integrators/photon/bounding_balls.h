@@ -9,8 +9,8 @@
 
 namespace fluxfarm {
 
-// The surfaces on which light must fall to make a caustic, as indices for Scene::surface(): those with a delta lobe.
-std::vector<std::uint32_t> specular_shapes(const Scene& scene);
+// The surfaces on which light must fall to make a caustic, as indices for Scene::surface(): all but diffuse ones.
+std::vector<std::uint32_t> glossy_shapes(const Scene& scene);
 
 // Balls that hold the surfaces together, in a fixed order: one for a sphere, and several for what a ball fits badly, so that a
 // pane or a surface of water is covered closely.

@@ -13,13 +13,19 @@
 #include "film/pixel_rect.h"
 #include "integrators/integrator.h"
 #include "integrators/photon/photon_map.h"
+#include "integrators/photon/photon_tracer.h"
+#include "integrators/photon/projection_map.h"
 
 namespace fluxfarm {
 
+// What the photons of each map are, but for their seed.
+PhotonSettings caustic_photon_settings(const Scene& scene);
+
 class CausticMaps final : public PreparedPass {
  public:
-  // Shoots for the samples of one pass. Throws as shoot_photons().
-  CausticMaps(const Scene& scene, std::uint64_t seed, SampleRange samples, int threads, const std::atomic<bool>& cancelled);
+  // Shoots for the samples of one pass. `projection` is one for caustics. Throws as shoot_photons().
+  CausticMaps(const Scene& scene, const ProjectionMap& projection, std::uint64_t seed, SampleRange samples, int threads,
+              const std::atomic<bool>& cancelled);
 
   // For sample `index` of any pixel.
   const PhotonMap& map(std::uint32_t index) const { return maps_[index - begin_]; }

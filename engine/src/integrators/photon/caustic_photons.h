@@ -61,12 +61,13 @@ class CausticPhotons {
 
 inline void CausticPhotons::gather(const State& state, const PathVertex& vertex, int room, const Rgb& throughput,
                                    const LightHistory& history, SampleResult& result) const {
+  const PhotonMap& map = maps_.map(state.sample);
   const float radius = maps_.radius() * pixel_angle_ * state.length;
-  if (!(radius > 0)) return;
+  if (map.size() == 0 || !(radius > 0)) return;
   const SurfacePatch patch(vertex, radius);
   ScatteredPhotons scattered(vertex);
   const float per_radius_squared = 1 / (radius * radius);
-  maps_.map(state.sample).for_each_within(vertex.point.position, radius, [&](Vec3f d, const PhotonLight& light) {
+  map.for_each_within(vertex.point.position, radius, [&](Vec3f d, const PhotonLight& light) {
     if (light.surfaces() < room && patch.accepts(d, light)) scattered.add(light, length_squared(d) * per_radius_squared);
   });
   scattered.add_to(result, throughput, radius * radius, history);

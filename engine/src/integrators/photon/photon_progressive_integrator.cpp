@@ -4,17 +4,19 @@
 #include "integrators/photon/caustic_maps.h"
 #include "integrators/photon/caustic_photons.h"
 #include "integrators/photon/photon_tracer.h"
+#include "integrators/photon/projection_pilot.h"
 
 namespace fluxfarm {
 
 void PhotonProgressiveIntegrator::prepare(const Scene& scene) {
-  const PhotonTracer checked(scene, {.photons = 1});
+  const PhotonTracer checked(scene, caustic_photon_settings(scene));
   scene_ = &scene;
+  projection_.emplace(caustic_projection(scene, caustic_photon_settings(scene)));
 }
 
-std::unique_ptr<const PreparedPass> PhotonProgressiveIntegrator::prepare_pass(std::uint64_t seed, SampleRange samples, int threads,
+std::shared_ptr<const PreparedPass> PhotonProgressiveIntegrator::prepare_pass(std::uint64_t seed, SampleRange samples, int threads,
                                                                               const std::atomic<bool>& cancelled) const {
-  return std::make_unique<CausticMaps>(*scene_, seed, samples, threads, cancelled);
+  return std::make_shared<CausticMaps>(*scene_, *projection_, seed, samples, threads, cancelled);
 }
 
 void PhotonProgressiveIntegrator::radiance(std::span<const CameraSample> samples, std::uint64_t seed, const PreparedPass* pass,

@@ -11,24 +11,28 @@
 // [KnausZwicker11] C. Knaus, M. Zwicker, "Progressive Photon Mapping: A Probabilistic Approach", ACM TOG 30(3), 2011.
 #pragma once
 
+#include <optional>
+
 #include "integrators/integrator.h"
+#include "integrators/photon/projection_map.h"
 
 namespace fluxfarm {
 
 class PhotonProgressiveIntegrator final : public Integrator {
  public:
   const char* name() const override { return "photon-progressive"; }
-  bool biased() const override { return true; }
+  Bias bias() const override { return Bias::kFalling; }
   bool finds_caustics() const override { return true; }
   // Throws SettingError if the scene has nothing to shoot or to shoot at.
   void prepare(const Scene& scene) override;
-  std::unique_ptr<const PreparedPass> prepare_pass(std::uint64_t seed, SampleRange samples, int threads,
+  std::shared_ptr<const PreparedPass> prepare_pass(std::uint64_t seed, SampleRange samples, int threads,
                                                    const std::atomic<bool>& cancelled) const override;
   void radiance(std::span<const CameraSample> samples, std::uint64_t seed, const PreparedPass* pass,
                 std::span<SampleResult> results, RayQueries& queries) const override;
 
  private:
   const Scene* scene_ = nullptr;
+  std::optional<ProjectionMap> projection_;
 };
 
 }  // namespace fluxfarm

@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "integrators/key_random.h"
+#include "integrators/photon/bounding_balls.h"
 
 namespace fluxfarm {
 namespace {
@@ -67,6 +68,12 @@ void follow_measured_use(const Scene& scene, const PhotonSettings& settings, Pro
     densities.push_back(cell.measure() * std::sqrt(use.mean_square()));
   }
   map.follow(densities);
+}
+
+ProjectionMap caustic_projection(const Scene& scene, const PhotonSettings& settings) {
+  ProjectionMap map(scene, bounding_balls(scene, glossy_shapes(scene)));
+  follow_measured_use(scene, settings, map);
+  return map;
 }
 
 }  // namespace fluxfarm

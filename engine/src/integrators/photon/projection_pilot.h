@@ -15,4 +15,7 @@ namespace fluxfarm {
 // [Neyman34] J. Neyman, "On the Two Different Aspects of the Representative Method", J. R. Statist. Soc. 97(4), 1934.
 void follow_measured_use(const Scene& scene, const PhotonSettings& settings, ProjectionMap& map);
 
+// The map of a scene for photons of caustics with those settings, which follows their use.
+ProjectionMap caustic_projection(const Scene& scene, const PhotonSettings& settings);
+
 }  // namespace fluxfarm

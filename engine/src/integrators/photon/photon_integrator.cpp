@@ -1,0 +1,36 @@
+#include "integrators/photon/photon_integrator.h"
+
+#include "integrators/path/path_group.h"
+#include "integrators/photon/global_maps.h"
+#include "integrators/photon/global_photons.h"
+#include "integrators/photon/photon_tracer.h"
+#include "integrators/photon/projection_pilot.h"
+
+namespace fluxfarm {
+
+void PhotonIntegrator::prepare(const Scene& scene) {
+  const PhotonTracer checked(scene, global_photon_settings(scene, PhotonKinds::all()));
+  scene_ = &scene;
+  projection_.emplace(caustic_projection(scene, global_photon_settings(scene, PhotonKinds::caustics())));
+}
+
+std::shared_ptr<const PreparedPass> PhotonIntegrator::prepare_pass(std::uint64_t seed, SampleRange, int threads,
+                                                                   const std::atomic<bool>& cancelled) const {
+  const std::lock_guard lock(mutex_);
+  if (!maps_ || seed_ != seed) {
+    maps_.reset();  // before the next ones take its memory
+    maps_ = std::make_shared<GlobalMaps>(*scene_, *projection_, seed, threads, cancelled);
+    seed_ = seed;
+  }
+  return maps_;
+}
+
+void PhotonIntegrator::radiance(std::span<const CameraSample> samples, std::uint64_t seed, const PreparedPass* pass,
+                                std::span<SampleResult> results, RayQueries& queries) const {
+  const auto& maps = *static_cast<const GlobalMaps*>(pass);
+  PathGroup<GlobalPhotons> group(*scene_, {*scene_, maps, seed}, queries);
+  for_each_group(samples, results,
+                 [&](std::span<const CameraSample> block, std::span<SampleResult> out) { group.trace(block, seed, out); });
+}
+
+}  // namespace fluxfarm
