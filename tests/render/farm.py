@@ -30,9 +30,10 @@ class Farm:
         assert self.service.client is not None
         return self.service.client
 
-    def submit(self, scene: Path = SCENE, goal: dict[str, float] | None = None) -> str:
+    def submit(self, scene: Path = SCENE, goal: dict[str, float] | None = None, integrator: str = "auto") -> str:
         size = {"width": SIDE, "height": SIDE}
-        return self.client.submit(scene.read_text(), size=size, goal=goal or {"spp": SPP}, seed=SEED)
+        wanted = {"size": size, "goal": goal or {"spp": SPP}, "seed": SEED, "integrator": integrator}
+        return self.client.submit(scene.read_text(), **wanted)
 
     def tiles_done(self, job_id: str) -> int:
         return int(self.client.job(job_id)["progress"]["tiles_done"])

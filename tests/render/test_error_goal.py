@@ -13,9 +13,11 @@ from conftest import ROOT, beauty, relative_error, render_alone
 from farm import Farm
 
 
-def true_errors(tmp_path: Path, scene: str, side: int, goal: float, seeds: int, reference_spp: int) -> np.ndarray:
-    """The true error of one job for each seed."""
-    file, size = ROOT / "scenes" / scene / "scene.xml", ("--size", f"{side}x{side}")
+def true_errors(
+    tmp_path: Path, scene: str, side: int, goal: float, seeds: int, reference_spp: int, method: str = "path"
+) -> np.ndarray:
+    """The true error of one job for each seed, against a long reference by the same method."""
+    file, size = ROOT / "scenes" / scene / "scene.xml", ("--size", f"{side}x{side}", "--integrator", method)
     reference = beauty(render_alone(file, tmp_path / "reference.exr", *size, "--spp", reference_spp, "--seed", 10_000))
     jobs = (
         render_alone(file, tmp_path / "image.exr", *size, "--rel-error", goal, "--seed", seed) for seed in range(seeds)
@@ -30,6 +32,14 @@ def test_error_goal_is_kept_without_wasting_samples(tmp_path: Path) -> None:
     assert np.median(errors) > 0.05, errors
     # Twin: the same pictures do not keep half of the goal.
     assert np.count_nonzero(errors <= 0.05) < 7, errors
+
+
+def test_error_goal_is_kept_with_photons(tmp_path: Path) -> None:
+    """With a bias, whose bound is a part of the error's."""
+    errors = true_errors(tmp_path, "cornell-glass", 64, 0.1, 8, 2048, "photon-progressive")
+    assert np.count_nonzero(errors <= 0.1) >= 7, errors
+    assert np.median(errors) > 0.04, errors
+    assert np.count_nonzero(errors <= 0.04) < 7, errors
 
 
 # A point light in a ball of glass, and another one without.
@@ -69,6 +79,26 @@ def test_light_that_no_path_finds_keeps_a_job_from_claiming_its_goal(farms: list
     )
     assert farm.client.succeed(job_id)["warnings"] == []
     assert farm.client.http.get(f"/v1/jobs/{job_id}/report").json()["error"]["unseen"] == 0
+
+
+def test_photons_find_the_light_that_no_path_finds(farms: list[Farm], tmp_path: Path) -> None:
+    farms.append(farm := Farm(tmp_path))
+    wanted = {"size": {"width": 64, "height": 64}, "goal": {"rel_error": 0.1}, "seed": 0}
+    job_id = farm.client.submit(BULB, integrator="photon-progressive", **wanted)
+    assert farm.client.succeed(job_id)["warnings"] == []
+    report = farm.client.http.get(f"/v1/jobs/{job_id}/report").json()
+    assert report["error"]["unseen"] == 0
+    assert report["error"]["bias"] < 0.1
+    # Glass without absorption takes nothing away: the two lamps shine alike.
+    scene = tmp_path / "bulb.xml"
+    scene.write_text(BULB)
+    dark = render_alone(scene, tmp_path / "dark.exr", "--size", "64x64", "--spp", 16)
+    bright = render_alone(
+        scene, tmp_path / "out.exr", "--size", "64x64", "--spp", 64, "--integrator", "photon-progressive"
+    )
+    left, right = slice(8, 28), slice(36, 56)
+    assert np.mean(dark["R"][40:60, left]) < 0.7 * np.mean(dark["R"][40:60, right])
+    assert np.mean(bright["R"]) == pytest.approx(2 * np.mean(dark["R"]), rel=0.1)
 
 
 @pytest.mark.slow

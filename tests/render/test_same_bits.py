@@ -71,6 +71,25 @@ def test_error_goal_gives_the_same_bits_whoever_renders_it(farms: list[Farm], tm
     assert same_bits(alone, farm.layers(job_id))
 
 
+@pytest.mark.parametrize("method", ["photon", "photon-progressive"])
+def test_photons_give_the_same_bits_whoever_shoots_them(farms: list[Farm], tmp_path: Path, method: str) -> None:
+    scene = ROOT / "scenes" / "cornell-glass" / "scene.xml"
+    options = ("--size", f"{SIDE}x{SIDE}", "--spp", SPP, "--seed", SEED, "--integrator", method)
+    alone = render_alone(scene, tmp_path / "alone.exr", *options)
+    assert alone["error.bias"].max() > 0
+    farms.append(farm := Farm(tmp_path, workers=2, tile_size=32))
+    job_id = farm.submit(scene, integrator=method)
+    farm.wait_for_tiles(job_id, 20)
+    os.kill(farm.engine_pids()[0], signal.SIGKILL)
+    farm.wait_for_tiles(job_id, 50)
+    farm.service.end(signal.SIGKILL)
+    farm.start()
+    assert same_bits(alone, farm.layers(job_id))
+    report = farm.client.http.get(f"/v1/jobs/{job_id}/report").json()
+    assert report["integrator"] == method
+    assert 0 < report["error"]["bias"] < 0.2
+
+
 def test_pause_and_resume_give_the_same_bits(farms: list[Farm], tmp_path: Path, alone: Layers) -> None:
     farms.append(farm := Farm(tmp_path))
     job_id = farm.submit()

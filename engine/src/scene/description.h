@@ -136,8 +136,8 @@ struct MethodDescription {
   int max_depth = -1;  // path edges: 1 shows emitters only, 2 adds direct light; -1 is unlimited
   int rr_depth = 5;    // first bounce at which Russian roulette may end a path
   bool hide_emitters = false;
-  // Of methods with photon maps: photons shot, by "photon" for each of its two kinds of maps, by "photon-progressive" for each
-  // sample of the pixels; 0 is a default.
+  // Of methods with photon maps: photons shot for each sample of the pixels, by "photon" for each of its two kinds of maps; 0 is a
+  // default.
   std::uint64_t photons = 0;
   bool final_gather = true;  // of "photon": a ray gathers indirect light; else it is read from the map directly
   float first_radius = 4;    // of "photon-progressive": of density estimates after the first sample, over the side of a pixel

@@ -4,6 +4,7 @@
 
 #include <functional>
 #include <random>
+#include <string_view>
 
 #include "integrators/photon/bounding_balls.h"
 #include "integrators/photon/projection_pilot.h"
@@ -57,6 +58,7 @@ SceneBuilder things() {
 struct EmitterCase {
   const char* name;
   SceneDescription scene;
+  bool too_large = false;  // in the sky for caustics that photons would carry: paths find that light
 };
 
 std::vector<EmitterCase> emitter_cases() {
@@ -64,7 +66,7 @@ std::vector<EmitterCase> emitter_cases() {
   const auto add = [&](const char* name, const std::function<void(SceneBuilder&)>& build) {
     SceneBuilder b = things();
     build(b);
-    cases.push_back({name, b.description()});
+    cases.push_back({name, b.description(), std::string_view(name) == "constant" || std::string_view(name) == "environment map"});
   };
   add("point", [](SceneBuilder& b) { b.emitter(PointEmitterDescription{{0.1f, 2, -0.2f}, Rgb{1}}); });
   add("spot with a slope", [](SceneBuilder& b) {
@@ -122,8 +124,12 @@ TEST(ProjectionMap, KeepsTheFluxOfCausticsOfEachKindOfEmitter) {
   for (const EmitterCase& c : emitter_cases()) {
     const Scene scene(c.scene, 1);
     const ProjectionMap mask = caustic_projection(scene), measured = measured_projection(scene);
-    const Measurement all = caustic_flux(scene, nullptr, 40000), masked = caustic_flux(scene, &mask, 10000),
-                      guided = caustic_flux(scene, &measured, 10000);
+    const Measurement all = caustic_flux(scene, nullptr, 80000), masked = caustic_flux(scene, &mask, 20000),
+                      guided = caustic_flux(scene, &measured, 20000);
+    if (c.too_large) {
+      EXPECT_EQ(all.mean + masked.mean + guided.mean, 0) << c.name;
+      continue;
+    }
     EXPECT_LT(z_between(all, masked), kMaxZ) << c.name << ": " << masked.mean << " for " << all.mean;
     EXPECT_LT(z_between(all, guided), kMaxZ) << c.name << ": " << guided.mean << " for " << all.mean;
     // A quarter of the photons, so that the noise would be twice as large.

@@ -8,8 +8,8 @@
 namespace fluxfarm {
 namespace {
 
-// Shot for each of the two kinds, over all replicates, where the scene does not say (a choice: a second on two cores).
-constexpr std::uint64_t kPhotons = 1 << 20;
+// Shot for each of the two kinds and each sample that the pixels take, where the scene does not say (a choice).
+constexpr std::uint64_t kPhotons = 1 << 14;
 // The photons of one map that are kept at most: 8 x 2 maps take 3 GB then.
 constexpr std::size_t kMostStored = std::size_t{1} << 23;
 
@@ -17,27 +17,29 @@ constexpr std::size_t kMostStored = std::size_t{1} << 23;
 
 PhotonSettings global_photon_settings(const Scene& scene, PhotonKinds kinds) {
   const MethodDescription& method = scene.method();
-  const std::uint64_t photons = method.photons > 0 ? method.photons : kPhotons;
-  return {.photons = std::max<std::uint64_t>(photons / kReplicates, 1),
+  return {.photons = method.photons > 0 ? method.photons : kPhotons,
           .seed = 0,
           .max_bounces = method.max_depth < 0 ? -1 : method.max_depth - 1,
           .kinds = kinds};
 }
 
-GlobalMaps::GlobalMaps(const Scene& scene, const ProjectionMap& projection, std::uint64_t seed, int threads,
+GlobalMaps::GlobalMaps(const Scene& scene, const ProjectionMap& projection, std::uint64_t seed, SampleRange samples, int threads,
                        const std::atomic<bool>& cancelled) {
   const auto shoot = [&](const PhotonSettings& settings, const PhotonTracer& tracer) {
     const ShotPhotons shot = shoot_photons(scene, tracer, {0, settings.photons}, kMostStored, threads, cancelled);
     rays_ += shot.rays;
     return PhotonMap(shot.photons, threads);
   };
-  PhotonSettings caustic = global_photon_settings(scene, PhotonKinds::caustics());
-  PhotonSettings indirect = global_photon_settings(scene, PhotonKind::kIndirect);
-  for (std::uint32_t replicate = 0; replicate < kReplicates; ++replicate) {
-    caustic.seed = hash_words(seed, replicate, 0);
-    indirect.seed = hash_words(seed, replicate, 1);
-    if (!projection.empty()) caustics_[replicate] = shoot(caustic, PhotonTracer(scene, caustic, projection));
-    indirect_[replicate] = shoot(indirect, PhotonTracer(scene, indirect));
+  for (std::uint32_t i = samples.begin; i < std::min(samples.begin + kReplicates, samples.end); ++i) {
+    const std::uint64_t own = (samples.end - i + kReplicates - 1) / kReplicates;  // samples of the replicate
+    PhotonSettings caustic = global_photon_settings(scene, PhotonKinds::caustics());
+    PhotonSettings indirect = global_photon_settings(scene, PhotonKind::kIndirect);
+    caustic.photons *= own;
+    indirect.photons *= own;
+    caustic.seed = hash_words(seed, i, 0);
+    indirect.seed = hash_words(seed, i, 1);
+    if (!projection.empty()) caustics_[i % kReplicates] = shoot(caustic, PhotonTracer(scene, caustic, projection));
+    indirect_[i % kReplicates] = shoot(indirect, PhotonTracer(scene, indirect));
   }
 }
 

@@ -1,4 +1,4 @@
-// The photons of a whole picture: for each replicate a map of caustics and one of all other indirect light.
+// The photons of one pass of photon mapping: for each replicate a map of caustics and one of all other indirect light.
 #pragma once
 
 #include <array>
@@ -13,13 +13,13 @@
 
 namespace fluxfarm {
 
-// What the photons of each map of those kinds are, but for their seed.
+// What the photons of those kinds are that are shot for one sample of the pixels, but for their seed.
 PhotonSettings global_photon_settings(const Scene& scene, PhotonKinds kinds);
 
 class GlobalMaps final : public PreparedPass {
  public:
   // `projection` is one for caustics. Throws as shoot_photons().
-  GlobalMaps(const Scene& scene, const ProjectionMap& projection, std::uint64_t seed, int threads,
+  GlobalMaps(const Scene& scene, const ProjectionMap& projection, std::uint64_t seed, SampleRange samples, int threads,
              const std::atomic<bool>& cancelled);
 
   // For sample `index` of any pixel.

@@ -14,15 +14,9 @@ void PhotonIntegrator::prepare(const Scene& scene) {
   projection_.emplace(caustic_projection(scene, global_photon_settings(scene, PhotonKinds::caustics())));
 }
 
-std::shared_ptr<const PreparedPass> PhotonIntegrator::prepare_pass(std::uint64_t seed, SampleRange, int threads,
+std::shared_ptr<const PreparedPass> PhotonIntegrator::prepare_pass(std::uint64_t seed, SampleRange samples, int threads,
                                                                    const std::atomic<bool>& cancelled) const {
-  const std::lock_guard lock(mutex_);
-  if (!maps_ || seed_ != seed) {
-    maps_.reset();  // before the next ones take its memory
-    maps_ = std::make_shared<GlobalMaps>(*scene_, *projection_, seed, threads, cancelled);
-    seed_ = seed;
-  }
-  return maps_;
+  return std::make_shared<GlobalMaps>(*scene_, *projection_, seed, samples, threads, cancelled);
 }
 
 void PhotonIntegrator::radiance(std::span<const CameraSample> samples, std::uint64_t seed, const PreparedPass* pass,

@@ -1,18 +1,18 @@
 // Photon mapping in two passes: direct light by the path tracer's means, caustics and indirect light from photon maps. Biased: by
-// blur that more samples do not take away, only more photons.
+// blur that does not go away as samples are added, for each pass has maps of its own, as coarse as those before.
 //
-// Parameters (MethodDescription): photons, of each of the two kinds of maps; final_gather, whether indirect light is gathered by a
-// ray or read where the path is; max_depth, rr_depth and hide_emitters as of the path tracer. Good for: a quick look at all light,
-// caustics and light from enclosed sources with them. Poor for: contact shadows and corners in a direct look; walls thinner than
-// the disks of photons. error.bias tells how much. Participating media are not modelled.
+// Parameters (MethodDescription): photons, of each of the two kinds of maps for each sample of the pixels; final_gather, whether
+// indirect light is gathered by a ray or read where the path is; max_depth, rr_depth and hide_emitters as of the path tracer.
 //
-// Each replicate has photons of its own, so that error.noise holds theirs, too.
+// Good for: a quick look at all light, caustics and light from enclosed sources with them. Poor for: contact shadows and corners in
+// a direct look; walls thinner than the disks of photons. error.bias tells how much. Participating media are not modelled.
+//
+// Each replicate and each pass has photons of its own: error.noise holds their noise, and it falls as samples are added.
 //
 // [Jensen96] H. W. Jensen, "Global Illumination using Photon Maps", EGWR 1996.
 #pragma once
 
 #include <memory>
-#include <mutex>
 #include <optional>
 
 #include "integrators/integrator.h"
@@ -27,7 +27,6 @@ class PhotonIntegrator final : public Integrator {
   bool finds_caustics() const override { return true; }
   // Throws SettingError if the scene has nothing to shoot or to shoot at.
   void prepare(const Scene& scene) override;
-  // The same for all passes of a seed.
   std::shared_ptr<const PreparedPass> prepare_pass(std::uint64_t seed, SampleRange samples, int threads,
                                                    const std::atomic<bool>& cancelled) const override;
   void radiance(std::span<const CameraSample> samples, std::uint64_t seed, const PreparedPass* pass,
@@ -36,9 +35,6 @@ class PhotonIntegrator final : public Integrator {
  private:
   const Scene* scene_ = nullptr;
   std::optional<ProjectionMap> projection_;  // for caustics
-  mutable std::mutex mutex_;
-  mutable std::uint64_t seed_ = 0;
-  mutable std::shared_ptr<const PreparedPass> maps_;  // of that seed; null before the first
 };
 
 }  // namespace fluxfarm

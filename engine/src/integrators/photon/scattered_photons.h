@@ -35,8 +35,10 @@ class ScatteredPhotons {
     const Rgb scale = throughput * (kInvPi / radius_squared);
     result.add(scale * smooth_, history.layer_by_caustic());
     result.add(scale * rough_, history.layer_by_indirect());
-    // Bias goes with the square of the radius: half of it is gone in a disk of half the area.
-    result.bias += scale * (smooth_ + rough_ - narrower_) * 2;
+    // In a disk of half the area a bias that goes with the radius, as at edges of surfaces and shadows, is sqrt(1/2) as large; one
+    // that goes with its square, as where light changes smoothly, is half as large, and is thought to be 1.7 times what it is.
+    constexpr float kPerDifference = 1 / (1 - 0.70710678f);
+    result.bias += scale * (smooth_ + rough_ - narrower_) * kPerDifference;
   }
 
  private:

@@ -1,0 +1,127 @@
+// Photon mapping in two passes as a whole: catalogue G2 and G4, caustics, and what it owns up to.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "film/error_goal.h"
+#include "integrators/photon_scenes.h"
+#include "support/error.h"
+#include "worker/frame_renderer.h"
+
+namespace fluxfarm {
+namespace {
+
+using testing::kMaxZ;
+using testing::kTwinZ;
+using testing::Measurement;
+using testing::replicated;
+using testing::SceneBuilder;
+
+const std::atomic<bool> kNever{false};
+
+FrameResult render(const Scene& scene, const Goal& goal, std::uint64_t seed, int threads = 2, int tile = 64) {
+  const PixelRect frame{0, 0, scene.film().width, scene.film().height};
+  const auto integrator = make_integrator("photon", scene);
+  return render_frame(scene, *integrator, {frame, tile, threads, seed, goal}, kNever);
+}
+
+Measurement mean_radiance(const SceneDescription& description, std::uint32_t spp) {
+  const Scene scene(description, 1);
+  return replicated([&](std::uint64_t seed) { return render(scene, {spp, {}, {}}, seed).summary.mean[1]; });
+}
+
+// A room inside a sphere of that albedo, lit by a point light off its middle, seen from inside.
+SceneBuilder sphere(float albedo) {
+  SceneBuilder builder;
+  builder.shape(SphereDescription{{0, 0, 0}, 1}, builder.diffuse(albedo), 0, true);
+  builder.emitter(PointEmitterDescription{{0.3f, 0.2f, 0}, Rgb{1}});
+  builder.look({0, 0, 0}, {0, -1, 0});
+  return builder;
+}
+
+SceneDescription with(const SceneBuilder& builder, bool final_gather, std::uint64_t photons = 4096) {
+  SceneDescription description = builder.description();
+  description.method.final_gather = final_gather;
+  description.method.photons = photons;
+  return description;
+}
+
+TEST(PhotonMapping, G2_IntegratingSphere) {
+  constexpr double kAlbedo = 0.5;
+  const double distance_squared = 0.09 + 1.44, cosine = 1.2 / std::sqrt(distance_squared);
+  const double direct = cosine / distance_squared, indirect = 4 * M_PI * kAlbedo / (4 * M_PI * (1 - kAlbedo));
+  const double expected = kAlbedo / M_PI * (direct + indirect);
+  for (const bool final_gather : {true, false}) {
+    const Measurement m = mean_radiance(with(sphere(kAlbedo), final_gather), 32);
+    EXPECT_LT(m.standard_error, 0.01 * expected) << final_gather;
+    EXPECT_NEAR(m.mean, expected, 0.01 * expected + kMaxZ * m.standard_error) << final_gather;
+    EXPECT_GT(m.z(kAlbedo / M_PI * (2 * direct + indirect)), kTwinZ) << "direct photons counted, too";
+    EXPECT_GT(m.z(kAlbedo / M_PI * (direct + indirect * kAlbedo)), kTwinZ) << "one bounce missing";
+  }
+}
+
+// A ball of glass, a rough mirror and a lamp in a closed room: everything at once, against the path tracer. The lamp is so large
+// that that converges.
+SceneBuilder room() {
+  SceneBuilder builder;
+  builder.shape(testing::cube(Transform::scale(1.5, 1, 1.5)), builder.diffuse(0.6f), 0, true);
+  builder.lamp_down(0, 0.99f, 0, 1, 1, builder.diffuse(0), 2);
+  builder.shape(SphereDescription{{0.5f, -0.5f, 0}, 0.35f}, builder.add(DielectricDescription{1.5f}));
+  builder.shape(SphereDescription{{-0.5f, -0.5f, 0.2f}, 0.35f},
+                builder.add(RoughConductorDescription{{.perfect = true, .specular_reflectance = Rgb{0.9f}},
+                                                      {MicrofacetDistribution::kGgx, 0.15f, 0.15f}}));
+  builder.look({0, 0, 1.4}, {0, -0.5, 0});
+  return builder;
+}
+
+TEST(PhotonMapping, FindsAllLightOnce) {
+  SceneDescription description = with(room(), true, 1 << 14);
+  description.camera.fov_degrees = 80;
+  description.film.width = description.film.height = 32;
+  const Scene scene(description, 2);
+  const PixelRect frame{0, 0, 32, 32};
+  const auto path = make_integrator("path", scene);
+  const double expected = render_frame(scene, *path, {frame, 64, 2, 1, {2048, {}, {}}}, kNever).summary.mean[1];
+  const FrameResult result = render(scene, {64, {}, {}}, 1);
+  EXPECT_NEAR(result.summary.mean[1], expected, 0.01 * expected);  // dark edges of the disks
+  EXPECT_GT(*result.summary.error_bias, 0);
+  // The layers add up, and caustics are in theirs.
+  const Image image = result.film.image(frame, {});
+  double caustic = 0;
+  for (const float value : *image.find("caustic.G")) caustic += static_cast<double>(value);
+  EXPECT_GT(caustic / (32 * 32), 0.005 * expected);
+}
+
+TEST(PhotonMapping, BitsDependOnNeitherThreadsNorTiles) {
+  SceneDescription description = with(room(), true);
+  description.film.width = description.film.height = 40;
+  description.camera.fov_degrees = 80;
+  const Scene scene(description, 1);
+  const Film one = render(scene, {5, {}, {}}, 3, 1, 64).film, other = render(scene, {5, {}, {}}, 3, 3, 16).film;
+  for (int y = 0; y < one.height(); ++y) {
+    for (int x = 0; x < one.width(); ++x) ASSERT_EQ(one.estimate(x, y).mean, other.estimate(x, y).mean) << x << " " << y;
+  }
+}
+
+// A goal below the blur ends without a claim, and says what to do; one above it is met.
+TEST(PhotonMapping, BlurThatNoSampleTakesAwayIsNotClaimed) {
+  SceneDescription description = with(room(), false, 256);
+  description.camera.fov_degrees = 80;
+  description.film.width = description.film.height = 32;
+  const Scene scene(description, 1);
+  const FrameResult fine = render(scene, {{}, {}, 0.03}, 1);
+  ASSERT_EQ(fine.warnings.size(), 1u);
+  EXPECT_NE(fine.warnings[0].find("blurs the picture"), std::string::npos) << fine.warnings[0];
+  EXPECT_NE(fine.warnings[0].find("photon-progressive"), std::string::npos);
+  EXPECT_GT(*fine.timeline.back().error_bound, 0.03);
+  EXPECT_TRUE(render(scene, {{}, {}, 0.5}, 1).warnings.empty());
+}
+
+TEST(PhotonMapping, ScenesThatMakeNoSenseSaySo) {
+  SceneBuilder dark;
+  dark.floor(0, 1, dark.diffuse(0.5f)).look({0, 1, 1}, {0, 0, 0});
+  EXPECT_THROW(make_integrator("photon", Scene(dark.description(), 1)), SettingError);
+}
+
+}  // namespace
+}  // namespace fluxfarm
