@@ -1,8 +1,10 @@
 """LuxCore on a flat scene, run by peers.py in a Python that has pyluxcore.
 
     luxcore_peer.py FLAT.npz SIDE DEPTH SPP,SPP,... OUT.npz
+    luxcore_peer.py FLAT.npz SIDE DEPTH SECONDS OUT.npz caustics
 
-Its path tracer for the CPU with the Sobol sampler; no clamping, no denoising. Lights are triangles: its own round ones
+Its path tracer for the CPU with the Sobol sampler; no clamping, no denoising. The second form renders once with the
+caustic cache of PhotonGI and once without, for so long each, photons included. Lights are triangles: its own round ones
 are never met by a ray. Its rough metal has Schlick's distribution, which is GGX's with alpha^2 as the roughness, and
 Schlick's masking, which is near Smith's.
 """
@@ -85,8 +87,20 @@ def scene_of(flat: str, side: int) -> pyluxcore.Scene:
     return scene
 
 
-def render(scene: pyluxcore.Scene, side: int, depth: int, spp: int, seed: int) -> tuple[np.ndarray, float]:
-    """(side, side, 3) and the seconds from the first sample to the last."""
+# Its own radius and, every 8 samples, another set of photons with a smaller one.
+CAUSTIC_CACHE = {
+    "path.photongi.caustic.enabled": 1,
+    "path.photongi.photon.maxcount": 4_000_000,
+    "path.photongi.caustic.maxsize": 100_000,
+    "path.photongi.caustic.updatespp": 8,
+    "path.photongi.caustic.updatespp.radiusreduction": 0.96,
+}
+
+
+def render(
+    scene: pyluxcore.Scene, side: int, depth: int, seed: int, halt: dict[str, float], more: dict[str, Any] | None = None
+) -> tuple[np.ndarray, float]:
+    """(side, side, 3) and the seconds from the start to the last sample."""
     values = {
         "renderengine.type": "PATHCPU",
         "renderengine.seed": seed + 1,
@@ -101,9 +115,10 @@ def render(scene: pyluxcore.Scene, side: int, depth: int, spp: int, seed: int) -
         "path.pathdepth.glossy": depth - 1,
         "path.pathdepth.specular": depth - 1,
         "path.clamping.variance.maxvalue": 0,
-        "batch.haltspp": spp,
         "film.outputs.0.type": "RGB",
         "film.outputs.0.filename": "image.exr",
+        **halt,
+        **(more or {}),
     }
     session = pyluxcore.RenderSession(pyluxcore.RenderConfig(properties(values), scene))
     session.Start()
@@ -119,12 +134,20 @@ def render(scene: pyluxcore.Scene, side: int, depth: int, spp: int, seed: int) -
 
 
 def main() -> None:
-    flat, side, depth, counts, out = sys.argv[1:]
+    flat, side, depth, much, out, *caustics = sys.argv[1:]
     pyluxcore.Init(lambda message: None)
     scene = scene_of(flat, int(side))
-    runs = [render(scene, int(side), int(depth), int(spp), seed) for seed, spp in enumerate(counts.split(","))]
-    images, seconds = zip(*runs, strict=True)
-    np.savez(out, names=["LuxCore"], images=np.stack(images)[None], seconds=[seconds])
+    if caustics:
+        halt = {"batch.halttime": float(much)}
+        runs = [render(scene, int(side), int(depth), 0, halt, cache) for cache in (CAUSTIC_CACHE, {})]
+        names, shape = ["LuxCore, PhotonGI", "LuxCore, path"], (2, 1)
+    else:
+        counts = enumerate(much.split(","))
+        runs = [render(scene, int(side), int(depth), seed, {"batch.haltspp": int(spp)}) for seed, spp in counts]
+        names, shape = ["LuxCore"], (1, len(runs))
+    images = np.stack([image for image, _ in runs])
+    seconds = np.array([s for _, s in runs])
+    np.savez(out, names=names, images=images.reshape(*shape, *images.shape[1:]), seconds=seconds.reshape(shape))
     os._exit(0)  # its own end, with many lights, is now and then a segmentation fault
 
 

@@ -140,7 +140,7 @@ struct MethodDescription {
   // default.
   std::uint64_t photons = 0;
   bool final_gather = true;  // of "photon": a ray gathers indirect light; else it is read from the map directly
-  float first_radius = 4;    // of "photon-progressive": of density estimates after the first sample, over the side of a pixel
+  float first_radius = 2;    // of "photon-progressive": of density estimates after the first sample, over the side of a pixel
 };
 
 struct SceneDescription {

@@ -8,6 +8,7 @@
 #include "integrators/light_history.h"
 #include "integrators/path/path_vertex.h"
 #include "integrators/photon/caustic_maps.h"
+#include "integrators/photon/nearest_photons.h"
 #include "integrators/photon/scattered_photons.h"
 #include "integrators/photon/sharpness.h"
 #include "integrators/photon/surface_patch.h"
@@ -26,8 +27,8 @@ class CausticPhotons {
     float length = 0;  // of the path so far, m
   };
   State start(const CameraSample& sample) const { return {.share = {}, .sample = sample.index}; }
-  // At a surface, `distance` (m) from where the ray began.
   bool ended(const State&) const { return false; }
+  // At a surface, `distance` (m) from where the ray began.
   void arrive(State& state, float distance) const {
     state.share.travel(distance);
     state.length += distance;
@@ -39,7 +40,7 @@ class CausticPhotons {
   // Adds the caustic light that continuous lobes of the surface scatter to the path. `room`: the path may have so many surfaces
   // from this one on, and less than that.
   void gather(const State& state, const PathVertex& vertex, int room, const Rgb& throughput, const LightHistory& history,
-              SampleResult& result) const;
+              SampleResult& result);
 
   float left_of_map(const State& state, Vec3f direction) const {
     const EnvmapEmitter* map = scene_.environment_map().emitter;
@@ -54,23 +55,23 @@ class CausticPhotons {
   }
 
  private:
+  // Photons of an estimate at most: where they lie close their disks are small.
+  static constexpr std::size_t kNearest = 16;
+
   const Scene& scene_;
   const CausticMaps& maps_;
   float pixel_angle_;
+  NearestPhotons nearest_;
 };
 
 inline void CausticPhotons::gather(const State& state, const PathVertex& vertex, int room, const Rgb& throughput,
-                                   const LightHistory& history, SampleResult& result) const {
+                                   const LightHistory& history, SampleResult& result) {
   const PhotonMap& map = maps_.map(state.sample);
-  const float radius = maps_.radius() * pixel_angle_ * state.length;
-  if (map.size() == 0 || !(radius > 0)) return;
-  const SurfacePatch patch(vertex, radius);
+  const float max_radius = maps_.radius() * pixel_angle_ * state.length;
+  if (map.size() == 0 || !(max_radius > 0)) return;
   ScatteredPhotons scattered(vertex);
-  const float per_radius_squared = 1 / (radius * radius);
-  map.for_each_within(vertex.point.position, radius, [&](Vec3f d, const PhotonLight& light) {
-    if (light.surfaces() < room && patch.accepts(d, light)) scattered.add(light, length_squared(d) * per_radius_squared);
-  });
-  scattered.add_to(result, throughput, radius * radius, history);
+  const float radius_squared = scattered.add_nearest(map, SurfacePatch(vertex, max_radius), kNearest, max_radius, room, nearest_);
+  scattered.add_to(result, throughput, radius_squared, history);
 }
 
 }  // namespace fluxfarm

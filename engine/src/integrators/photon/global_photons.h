@@ -89,23 +89,8 @@ class GlobalPhotons {
 
 inline void GlobalPhotons::estimate(const PhotonMap& map, const PathVertex& vertex, int room, const Rgb& throughput,
                                     const LightHistory& history, SampleResult& result) {
-  const SurfacePatch patch(vertex, max_radius_);
-  nearest_.start(kNearest, max_radius_ * max_radius_);
-  map.find_nearest(
-      patch.position(), [&](Vec3f d, const PhotonLight& light) { return light.surfaces() < room && patch.accepts(d, light); },
-      nearest_);
-  nearest_.finish();
-  float radius_squared = max_radius_ * max_radius_;
-  if (nearest_.size() == kNearest) {
-    const std::size_t farthest = nearest_.farthest();  // sets the radius and is not counted
-    radius_squared = nearest_.distances_squared()[farthest];
-    nearest_.remove(farthest);
-  }
-  if (!(radius_squared > 0)) return;
   ScatteredPhotons scattered(vertex);
-  for (std::size_t i = 0; i < nearest_.size(); ++i) {
-    scattered.add(map.light(nearest_.photons()[i]), nearest_.distances_squared()[i] / radius_squared);
-  }
+  const float radius_squared = scattered.add_nearest(map, SurfacePatch(vertex, max_radius_), kNearest, max_radius_, room, nearest_);
   scattered.add_to(result, throughput, radius_squared, history);
 }
 

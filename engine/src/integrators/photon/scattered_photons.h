@@ -1,4 +1,4 @@
-// What a surface scatters to a path of the light of photons in a disk around it, and how much of that is blur.
+// What a surface scatters to a path of the light of photons in a disk around a place, and how much of that is blur.
 #pragma once
 
 #include <cmath>
@@ -7,8 +7,11 @@
 #include "integrators/light_history.h"
 #include "integrators/path/path_vertex.h"
 #include "integrators/photon/density_kernel.h"
+#include "integrators/photon/nearest_photons.h"
 #include "integrators/photon/photon.h"
+#include "integrators/photon/photon_map.h"
 #include "integrators/photon/sharpness.h"
+#include "integrators/photon/surface_patch.h"
 
 namespace fluxfarm {
 
@@ -30,8 +33,32 @@ class ScatteredPhotons {
     if (t < 0.5f) narrower_ += scattered * (2 * kKernel.weight(2 * t));
   }
 
-  // Adds it to what a path brings back that is weighted with `throughput`. `radius_squared` (m^2): of the disk.
+  // Adds the nearest `count` photons, of which the farthest sets the radius and is not counted, or all within `max_radius` (m) if
+  // those are fewer: of those that `patch` accepts and that met fewer than `room` surfaces. `nearest` is workspace. Returns the
+  // squared radius, m^2.
+  float add_nearest(const PhotonMap& map, const SurfacePatch& patch, std::size_t count, float max_radius, int room,
+                    NearestPhotons& nearest) {
+    float radius_squared = max_radius * max_radius;
+    nearest.start(count, radius_squared);
+    map.find_nearest(
+        patch.position(), [&](Vec3f d, const PhotonLight& light) { return light.surfaces() < room && patch.accepts(d, light); },
+        nearest);
+    nearest.finish();
+    if (nearest.size() == count) {
+      const std::size_t farthest = nearest.farthest();
+      radius_squared = nearest.distances_squared()[farthest];
+      nearest.remove(farthest);
+    }
+    if (!(radius_squared > 0)) return 0;
+    for (std::size_t i = 0; i < nearest.size(); ++i) {
+      add(map.light(nearest.photons()[i]), nearest.distances_squared()[i] / radius_squared);
+    }
+    return radius_squared;
+  }
+
+  // Adds it to what a path brings back that is weighted with `throughput`. `radius_squared` (m^2): of the disk; 0 adds nothing.
   void add_to(SampleResult& result, const Rgb& throughput, float radius_squared, const LightHistory& history) const {
+    if (!(radius_squared > 0)) return;
     const Rgb scale = throughput * (kInvPi / radius_squared);
     result.add(scale * smooth_, history.layer_by_caustic());
     result.add(scale * rough_, history.layer_by_indirect());
