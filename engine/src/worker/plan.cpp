@@ -47,6 +47,8 @@ std::string plan_json(const Scene& scene, const Integrator& integrator) {
         part("emitter choice", emitters > 1, count(emitters, "emitter") + " to choose from"),
         part("emitter tree", scene.emitters().by_place(), count(scene.emitters().candidates(), "emitter or triangle")),
         part("light-side audit", audit.kind == AuditNeed::kNeeded, audit.reason),
+        part("photon maps", integrator.bias() != Integrator::Bias::kNone,
+             integrator.bias() != Integrator::Bias::kNone ? "the method has them" : "the method has none"),
         part("environment", census.environment, census.environment ? "a constant environment" : "no environment"),
         part("environment map", census.environment_map, census.environment_map ? "an envmap" : "no envmap"),
         part("tangent frames", census.anisotropic_materials || census.normal_maps,
