@@ -21,7 +21,7 @@ EmissionSample emitted_from_outside(Vec3f direction, Rgb irradiance, float solid
   const Frame frame(direction);
   const Vec2f p = square_to_uniform_disk(u_point);
   const Vec3f origin = scene_center + scene_radius * (p.x * frame.s + p.y * frame.t - direction);
-  return {{origin, direction}, irradiance * (kPi * scene_radius * scene_radius), false, {0, solid_angle}};
+  return {{origin, direction}, irradiance * (kPi * scene_radius * scene_radius), false, {0, solid_angle}, true};
 }
 
 std::optional<EmitterSample> AreaEmitter::sample(Vec3f reference, Vec2f u) const {

@@ -48,6 +48,7 @@ struct EmissionSample {
   Rgb flux;            // what leaves in all, over the density of this ray, W
   bool delta = false;  // of a delta light: BSDF sampling from the other end cannot find it
   ApparentSize size = {};
+  bool from_outside = false;  // has come through all that surrounds the scene
 };
 
 class Emitter {

@@ -24,6 +24,12 @@ class ChannelMis {
     return weighted(medium.sigma_s() * left, medium.sigma_t() * left);
   }
 
+  // The same with absorption left to what follows: the light that collides.
+  Rgb collide(const HomogeneousMedium& medium, float distance) {
+    const Rgb colliding = medium.sigma_t() * relative_transmittance(medium, distance);
+    return weighted(colliding, colliding);
+  }
+
   // The same of having flown `distance` m (infinity allowed) without a collision.
   Rgb pass(const HomogeneousMedium& medium, float distance) {
     const Rgb left = relative_transmittance(medium, distance);

@@ -28,6 +28,11 @@ class HomogeneousMedium {
 
   const Rgb& sigma_t() const { return sigma_t_; }  // extinction, m^-1
   const Rgb& sigma_s() const { return sigma_s_; }  // scattering, m^-1
+  // Part of the light that a collision scatters.
+  Rgb albedo() const {
+    const auto part = [](float scattered, float all) { return all > 0 ? scattered / all : 0.0f; };
+    return {part(sigma_s_.r, sigma_t_.r), part(sigma_s_.g, sigma_t_.g), part(sigma_s_.b, sigma_t_.b)};
+  }
   const PhaseFunction& phase() const { return phase_; }
   // Whether the channels differ in their extinction.
   bool coloured() const { return sigma_t_.r != sigma_t_.g || sigma_t_.g != sigma_t_.b; }

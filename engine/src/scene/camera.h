@@ -35,6 +35,8 @@ class Camera {
   // near and the far plane.
   std::optional<Projection> project(Vec3f point, Vec2f u) const;
   bool has_lens() const { return aperture_radius_ > 0; }
+  // Of the pinhole, or the middle of the lens, world, m.
+  Vec3f position() const { return origin_; }
   // What a pixel in the middle of the film sees, side in rad.
   float pixel_angle() const { return std::sqrt(length(cross(step_x_, step_y_))); }
   // Distance of a point from the camera along the view axis, m.

@@ -86,6 +86,7 @@ class Scene {
     }
   };
   const Boundary& boundary(std::uint32_t shape) const { return boundaries_[shape]; }
+  const std::vector<HomogeneousMedium>& media() const { return media_; }
   const HomogeneousMedium* camera_medium() const { return camera_medium_; }  // nullptr: vacuum
   const RayAccelerator& accelerator() const { return *accelerator_; }
   const EmitterChoice& emitters() const { return emitter_choice_; }

@@ -14,12 +14,12 @@ struct FluxLedger {
 
   double emitted = 0;
   double left_out = 0;  // never emitted: the part of the emitters' power that a projection map does without
-  double absorbed = 0;  // by surfaces: what arrived less what the BSDF's own sampling sent on
+  double absorbed = 0;  // by surfaces and media: what arrived less what sampling sent on
   double escaped = 0;   // out of the scene
   double cut = 0;       // by the limit of bounces, or because what comes is not to be stored
   double ended = 0;     // by roulette
   double regained = 0;  // by survivors of roulette
-  // What arrives at the first, second ... surface on the way; the last counts all that come after it, too.
+  // What arrives at the first, second ... surface or collision on the way; the last counts all that come after it, too.
   std::array<double, kBounces> arrived{};
 
   // `bounce` counts from 0.

@@ -16,8 +16,9 @@
 
 namespace fluxfarm {
 
-// What the light met between its emitter and the surface where it is stored. Surfaces that it passed as if they were not there do
-// not count. Every photon is of one kind: a global map holds all of them, a caustic map the second and the third.
+// What the light met between its emitter and the place where it is stored, on surfaces and in media. Surfaces that it passed as if
+// they were not there do not count. Every photon is of one kind: a global map holds all of them, a caustic map the second and the
+// third.
 enum class PhotonKind : std::uint32_t {
   kDirect,    // nothing: L D
   kCaustic,   // mirrors and smooth refractions only: L S+ D
@@ -47,14 +48,18 @@ class PhotonLight {
  public:
   PhotonLight() = default;
   // `wi` (unit, world) leaves the surface towards where the light came from, `normal` (unit, world) is the geometric one on the
-  // front of the surface; flux in W. `surfaces` on the way, with this one: more than kMostSurfaces count as so many. `dither` is
-  // even in [0,1).
+  // front of the surface; flux in W. `surfaces` on the way, with this one and with collisions in media: more than
+  // kMostSurfaces count as so many. `dither` is even in [0,1).
   PhotonLight(Rgb flux, Vec3f wi, Vec3f normal, PhotonKind kind, int surfaces, float dither)
       : flux_(to_rgbe(flux, dither)),
         wi_(to_octahedral<16>(wi)),
         normal_and_way_(packed_normal(normal) << kWayBits |
                         static_cast<std::uint32_t>(std::min(surfaces, kMostSurfaces)) << kSurfacesShift |
                         (dot(wi, normal) > 0 ? kAtFront : 0) | static_cast<std::uint32_t>(kind)) {}
+  // Of light that collides in a medium: there is no normal, and the flux is what the collision scatters.
+  static PhotonLight in_medium(Rgb flux, Vec3f wi, PhotonKind kind, int surfaces, float dither) {
+    return {flux, wi, wi, kind, surfaces, dither};
+  }
   static constexpr int kMostSurfaces = 31;
 
   Rgb flux() const { return from_rgbe(flux_); }  // W

@@ -5,10 +5,14 @@
 #include "integrators/photon/global_photons.h"
 #include "integrators/photon/photon_tracer.h"
 #include "integrators/photon/projection_pilot.h"
+#include "support/error.h"
 
 namespace fluxfarm {
 
 void PhotonIntegrator::prepare(const Scene& scene) {
+  if (scene.census().media > 0 || scene.census().null_boundaries) {
+    throw SettingError("the scene has participating media or null boundaries, which the method photon does not model");
+  }
   const PhotonTracer checked(scene, global_photon_settings(scene, PhotonKinds::all()));
   scene_ = &scene;
   projection_.emplace(caustic_projection(scene, global_photon_settings(scene, PhotonKinds::caustics())));

@@ -6,7 +6,11 @@
 // lost no colour yet P is the largest reflectance, diffuse and specular together, as in [Jensen96]. So photons of one emitter stay
 // equally strong, which is what density estimates want.
 //
-// Photons are stored at surfaces with a continuous lobe, at every bounce. Participating media are not modelled.
+// Photons are stored at surfaces with a continuous lobe, at every bounce.
+//
+// In media a photon flies as a path does (media/channel_mis.h) and collides: an event like any other, with the albedo for a
+// reflectance and the phase function for a lobe. It is stored at every collision with the flux that is scattered there, so that
+// flux over volume is what the medium scatters of the light that crosses it. Null boundaries are no events.
 #pragma once
 
 #include <cstddef>
@@ -26,8 +30,14 @@ namespace fluxfarm {
 struct PhotonSettings {
   std::uint64_t photons = 0;  // shot in all: each carries one so-many-th of the power
   std::uint64_t seed = 0;
-  int max_bounces = -1;  // surfaces on the way, with the one where the photon is stored; -1 is unlimited
+  int max_bounces = -1;  // surfaces and collisions on the way, with the one where the photon is stored; -1 is unlimited
   PhotonKinds kinds = PhotonKinds::all();
+};
+
+// What photons leave on their way.
+struct StoredPhotons {
+  std::vector<Photon> photons;   // at surfaces
+  std::vector<Photon> in_media;  // at collisions: flux that is scattered there
 };
 
 class PhotonTracer {
@@ -36,7 +46,7 @@ class PhotonTracer {
   static constexpr std::size_t kGroup = 64;
 
   // `weights`: parts of the emitters in the photons, as ParticleSource takes them. Throws SettingError if there is nothing to
-  // shoot, or no surface to store it, and where media are in the way.
+  // shoot, or nothing that could store it.
   PhotonTracer(const Scene& scene, const PhotonSettings& settings, const std::vector<double>& weights);
   // In proportion to power.
   PhotonTracer(const Scene& scene, const PhotonSettings& settings);
@@ -50,7 +60,7 @@ class PhotonTracer {
   }
 
   // Follows photons first ... first + count - 1, count <= kGroup. Appends what they leave, in an order that is fixed.
-  void trace(std::uint64_t first, std::size_t count, RayQueries& queries, std::vector<Photon>& stored, FluxLedger& ledger) const;
+  void trace(std::uint64_t first, std::size_t count, RayQueries& queries, StoredPhotons& stored, FluxLedger& ledger) const;
 
  private:
   class Group;
@@ -59,6 +69,8 @@ class PhotonTracer {
   PhotonSettings settings_;
   ParticleSource source_;
   const ProjectionMap* projection_ = nullptr;  // null: all that is emitted
+  bool media_ = false;                         // or null boundaries: surfaces have two sides
+  bool media_change_ = false;                  // not all of the scene lies in the camera's medium
 };
 
 }  // namespace fluxfarm

@@ -32,18 +32,21 @@ std::vector<Use> measured(const Scene& scene, const PhotonSettings& settings, co
     KeyRandom random(settings.seed, KeyRandom::kPhoton, photon);
     return map.cell_at(tracer.place(photon, random));
   };
-  std::vector<Photon> stored;
+  StoredPhotons stored;
   FluxLedger ledger;
   for (std::uint64_t first = 0, end = 0; first < settings.photons; first = end) {  // photons of one cell at a time
     const std::size_t cell = cell_of(first);
     for (end = first + 1; end < settings.photons && end < first + PhotonTracer::kGroup && cell_of(end) == cell;) ++end;
-    stored.clear();
+    stored.photons.clear();
+    stored.in_media.clear();
     tracer.trace(first, end - first, queries, stored, ledger);
     const double density = map.probability(cell) / map.cells()[cell].cell.measure() * static_cast<double>(settings.photons);
     Use use{0, static_cast<double>(end - first)};
-    for (const Photon& photon : stored) {
-      const double flux = static_cast<double>(mean(photon.light.flux())) * density;
-      use.squares += flux * flux;
+    for (const std::vector<Photon>* photons : {&stored.photons, &stored.in_media}) {
+      for (const Photon& photon : *photons) {
+        const double flux = static_cast<double>(mean(photon.light.flux())) * density;
+        use.squares += flux * flux;
+      }
     }
     uses[cell].add(use);
   }

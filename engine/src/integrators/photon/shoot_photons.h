@@ -21,8 +21,7 @@ struct PhotonRange {
   std::uint64_t begin = 0, end = 0;
 };
 
-struct ShotPhotons {
-  std::vector<Photon> photons;  // in the order of their indices
+struct ShotPhotons : StoredPhotons {  // in the order of their indices
   FluxLedger ledger;
   std::uint64_t rays = 0;
 };
