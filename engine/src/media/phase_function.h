@@ -27,6 +27,12 @@ class PhaseFunction {
     return (0.25f * kInvPi) * (1 - g_) * (1 + g_) / (base * std::sqrt(base));
   }
 
+  // The largest value that it has.
+  float peak() const {
+    const float size = std::fabs(g_);
+    return (0.25f * kInvPi) * (1 + size) / ((1 - size) * (1 - size));
+  }
+
   // A direction to leave in, for u in [0,1)^2; its weight is one.
   Vec3f sample(Vec3f along, Vec2f u) const {
     // A point of the disk gives the azimuth, and its squared radius s a cosine w = 1 - 2s that is uniform in [-1,1].

@@ -1,9 +1,11 @@
-// Photons in media: their ledger, catalogue P1, and the media that they start in.
+// Photons in media: their ledger, catalogue P1, the media that they start in, and the estimates of catalogue M6.
 #include <gtest/gtest.h>
 
 #include <array>
 #include <cmath>
+#include <random>
 
+#include "integrators/photon/volume_estimate.h"
 #include "integrators/photon_scenes.h"
 #include "support/sky.h"
 
@@ -190,6 +192,116 @@ TEST(VolumePhotons, LightFromOutsideIsLostInAMediumWithoutEnd) {
   for (const Photon& photon : shot.photons) {
     EXPECT_GT(photon.light.flux().r, 0);
     EXPECT_EQ(photon.light.flux().g, 0);
+  }
+}
+
+// ---------------------------------------------------------------- the beam
+
+Photon photon_in(Vec3f position, float flux, Vec3f wi, float dither) {
+  return {position, PhotonLight::in_medium(Rgb{flux}, wi, PhotonKind::kCaustic, 2, dither)};
+}
+
+// Evenly over a cube of side two, light from all directions, one watt for each m^3.
+PhotonMap even_cube(std::size_t count, std::uint64_t seed) {
+  std::mt19937 random(static_cast<unsigned>(seed));
+  std::uniform_real_distribution<float> unit(0, 1);
+  std::vector<Photon> photons;
+  for (std::size_t i = 0; i < count; ++i) {
+    const Vec3f p{2 * unit(random) - 1, 2 * unit(random) - 1, 2 * unit(random) - 1};
+    const Vec3f wi = square_to_uniform_sphere({unit(random), unit(random)});
+    photons.push_back(photon_in(p, 8 / static_cast<float>(count), wi, unit(random)));
+  }
+  return PhotonMap(photons, 2);
+}
+
+TEST(VolumePhotons, BeamsFindAllPhotonsInThem) {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<float> unit(0, 1);
+  for (const std::size_t size : {0, 1, 16, 17, 100, 1000, 5000}) {
+    std::vector<Photon> photons;
+    for (std::size_t i = 0; i < size; ++i) {
+      const Vec3f p{unit(random), unit(random) * unit(random), unit(random) < 0.3f ? 0.5f : unit(random)};
+      photons.push_back(photon_in(p, static_cast<float>(i % 128 + 128), {0, 1, 0}, 0));
+    }
+    const PhotonMap map(photons, 2);
+    for (int trial = 0; trial < 200; ++trial) {
+      Beam beam{{3 * unit(random) - 1, 3 * unit(random) - 1, 3 * unit(random) - 1},
+                square_to_uniform_sphere({unit(random), unit(random)}),
+                trial % 3 == 0 ? std::numeric_limits<float>::infinity() : 2 * unit(random),
+                0.2f * unit(random),
+                trial % 2 == 0 ? 0 : 0.3f * unit(random)};
+      if (trial % 5 == 0) beam.direction = {0, trial % 2 == 0 ? 1.0f : -1.0f, 0};  // along an axis
+      std::vector<float> found, expected;
+      map.for_each_in(beam, [&](float, float, const PhotonLight& light) { found.push_back(light.flux().g); });
+      for (const Photon& photon : photons) {
+        const Vec3f d = photon.position - beam.origin;
+        const float along = dot(d, beam.direction);
+        if (along < 0 || along > beam.length) continue;
+        if (length_squared(d - along * beam.direction) <= sqr(beam.radius_at(along))) expected.push_back(photon.light.flux().g);
+      }
+      std::ranges::sort(found);
+      std::ranges::sort(expected);
+      ASSERT_EQ(found, expected) << size << " " << trial;
+    }
+  }
+}
+
+// ---------------------------------------------------------------- M6
+
+TEST(VolumePhotons, M6_BallAndBeamAreExactInAnEvenField) {
+  std::vector<PhotonMap> maps;
+  for (std::uint64_t seed = 1; seed <= kReplicates; ++seed) maps.push_back(even_cube(200000, seed));
+  for (const float g : {0.0f, 0.5f}) {
+    const HomogeneousMedium medium(grey(0.8f, 1, g));
+    const Vec3f direction = normalize(Vec3f{0.6f, 0.3f, 0.5f});
+    const Measurement in_ball = replicated([&](std::uint64_t seed) {
+      return static_cast<double>(scattered_within(maps[seed - 1], {0.1f, -0.2f, 0}, 0.4f, medium.phase(), direction).g);
+    });
+    const auto along = [&](float radius, float spread) {
+      return replicated([&](std::uint64_t seed) {
+        const Beam beam{Vec3f{-0.3f, -0.2f, -0.4f}, direction, 0.9f, radius, spread};
+        return static_cast<double>(scattered_along(maps[seed - 1], beam, medium, 9).value.g);
+      });
+    };
+    const double each_metre = 1 / (4 * M_PI), on_the_way = each_metre * (1 - std::exp(-0.8 * 0.9)) / 0.8;
+    EXPECT_LT(in_ball.z(each_metre), kMaxZ) << in_ball.mean << " for " << each_metre;
+    EXPECT_LT(in_ball.standard_error, 0.01 * each_metre);
+    EXPECT_GT(in_ball.z(each_metre * 0.8), kTwinZ);  // the disk's constant
+    for (const Measurement& in_beam : {along(0.25f, 0), along(0.1f, 0.2f)}) {
+      EXPECT_LT(in_beam.z(on_the_way), kMaxZ) << in_beam.mean << " for " << on_the_way;
+      EXPECT_LT(in_beam.standard_error, 0.015 * on_the_way);
+      EXPECT_GT(in_beam.z(on_the_way * 1.25), kTwinZ);  // the ball's constant
+      EXPECT_GT(in_beam.z(each_metre * 0.9), kTwinZ);   // no extinction
+      EXPECT_NEAR(in_beam.mean / in_ball.mean, on_the_way / each_metre,
+                  kMaxZ * std::hypot(in_beam.standard_error, in_ball.standard_error) / in_ball.mean);
+    }
+  }
+}
+
+// The same with light that was shot: under an even sky the radiance in a medium that absorbs nothing is that of the sky (M3).
+TEST(VolumePhotons, M6_AnEvenSkyInAMediumThatAbsorbsNothing) {
+  SceneBuilder builder = ball({{0.5f, 1, 2}, Rgb{1}, 0.4f}, 1);
+  builder.emitter(ConstantEmitterDescription{Rgb{1}}).look({0, 0, 5}, {0, 0, 0});
+  const Scene scene(builder.description(), 1);
+  const HomogeneousMedium& medium = scene.media().front();
+  std::vector<PhotonMap> maps;
+  for (std::uint64_t seed = 1; seed <= kReplicates; ++seed) {
+    maps.emplace_back(shoot(scene, {.photons = 50000, .seed = seed}).in_media, 2);
+  }
+  for (int channel = 0; channel < 3; ++channel) {
+    const auto pick = [&](Rgb value) { return static_cast<double>(channel == 0 ? value.r : channel == 1 ? value.g : value.b); };
+    const double sigma = pick(medium.sigma_s());
+    const Measurement in_ball = replicated([&](std::uint64_t seed) {
+      return pick(scattered_within(maps[seed - 1], {0.1f, 0.2f, 0}, 0.5f, medium.phase(), {0, 0, 1}));
+    });
+    const Measurement in_beam = replicated([&](std::uint64_t seed) {
+      return pick(scattered_along(maps[seed - 1], {{0, 0, -0.8f}, {0, 0, 1}, 1.6f, 0.2f, 0}, medium, 32).value);
+    });
+    EXPECT_LT(in_ball.z(sigma), kMaxZ) << channel << ": " << in_ball.mean << " +- " << in_ball.standard_error;
+    EXPECT_GT(in_ball.z(sigma * 0.8), kTwinZ);
+    const double expected = 1 - std::exp(-1.6 * sigma);
+    EXPECT_LT(in_beam.z(expected), kMaxZ) << channel << ": " << in_beam.mean << " +- " << in_beam.standard_error;
+    EXPECT_GT(in_beam.z(expected * 1.25), kTwinZ);
   }
 }
 

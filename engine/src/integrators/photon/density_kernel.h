@@ -22,6 +22,11 @@ struct EpanechnikovKernel {
   float weight(float t) const { return 2 * (1 - t); }
 };
 
+// The same in space, t over the radius of a ball: its mean over the ball is one.
+struct EpanechnikovBallKernel {
+  float weight(float t) const { return 2.5f * (1 - t); }
+};
+
 // Smooth at its rim, too.                                                                          [Silverman86]
 // [Silverman86] B. W. Silverman, "Density Estimation for Statistics and Data Analysis", Chapman and Hall 1986.
 struct SilvermanKernel {

@@ -90,6 +90,7 @@ class PhotonMap::Builder {
 
 PhotonMap::PhotonMap(std::span<const Photon> photons, int threads) : size_(photons.size()) {
   if (photons.empty()) return;
+  for (const Photon& photon : photons) bounds_.extend(photon.position);
   const std::size_t leaves = (photons.size() + kBlock - 1) / kBlock;
   places_.resize(leaves);
   lights_.resize(leaves * kBlock);

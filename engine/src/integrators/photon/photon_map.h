@@ -19,8 +19,10 @@
 #include <span>
 #include <vector>
 
+#include "integrators/photon/beam.h"
 #include "integrators/photon/nearest_photons.h"
 #include "integrators/photon/photon.h"
+#include "math/bounds.h"
 #include "math/vec.h"
 
 namespace fluxfarm {
@@ -40,6 +42,11 @@ class PhotonMap {
   // the photon.
   template <typename Visit>
   void for_each_within(Vec3f center, float radius, Visit&& visit) const;
+
+  // Calls visit(distance, across, light) for each photon in the beam, in an order that is fixed: how far along the beam it is, m,
+  // and the square of how far from its axis, over that of the beam's radius there.
+  template <typename Visit>
+  void for_each_in(const Beam& beam, Visit&& visit) const;
 
   // Adds to `nearest` each photon that accept(d, light) takes and that may be among those which it wants.
   template <typename Accept>
@@ -61,6 +68,12 @@ class PhotonMap {
   // Of the photons of a leaf those within a distance.
   struct Lanes {
     std::array<float, kBlock> distance_squared;
+    std::array<std::uint32_t, kBlock> lane;
+    std::size_t count = 0;
+  };
+  // The same of those in a beam.
+  struct BeamLanes {
+    std::array<float, kBlock> distance, across;
     std::array<std::uint32_t, kBlock> lane;
     std::size_t count = 0;
   };
@@ -91,12 +104,31 @@ class PhotonMap {
     }
     return lanes;
   }
+  BeamLanes lanes_in(std::size_t block, const Beam& beam) const {
+    const Places& places = places_[block];
+    const Vec3f o = beam.origin, v = beam.direction;
+    BeamLanes lanes;
+    for (std::size_t i = 0; i < kBlock; ++i) {
+      const float x = places.x[i] - o.x, y = places.y[i] - o.y, z = places.z[i] - o.z;
+      const float along = x * v.x + y * v.y + z * v.z;
+      const float across_x = x - along * v.x, across_y = y - along * v.y, across_z = z - along * v.z;
+      const float squared = across_x * across_x + across_y * across_y + across_z * across_z;
+      lanes.distance[i] = along;
+      lanes.across[i] = (along >= 0) & (along <= beam.length) ? squared / sqr(beam.radius_at(along)) : 2.0f;
+    }
+    for (std::uint32_t i = 0; i < kBlock; ++i) {
+      lanes.lane[lanes.count] = i;
+      lanes.count += lanes.across[i] <= 1;
+    }
+    return lanes;
+  }
   Vec3f offset(std::size_t block, std::uint32_t lane, Vec3f center) const {
     const Places& places = places_[block];
     return Vec3f{places.x[lane], places.y[lane], places.z[lane]} - center;
   }
 
   std::size_t size_ = 0;
+  Bounds bounds_;               // of all photons
   std::vector<Places> places_;  // of each leaf
   std::vector<PhotonLight> lights_;
   std::vector<Node> nodes_;
@@ -134,6 +166,36 @@ void PhotonMap::for_each_within(Vec3f center, float radius, Visit&& visit) const
           visit(offset(block, lanes.lane[k], center), lights_[block * kBlock + lanes.lane[k]]);
         }
       });
+}
+
+template <typename Visit>
+void PhotonMap::for_each_in(const Beam& beam, Visit&& visit) const {
+  if (size_ == 0) return;
+  struct Piece {
+    std::uint32_t node;
+    BeamPart part;
+  };
+  std::array<Piece, 32> later;
+  std::size_t waiting = 0;
+  later[waiting++] = {1, beam.part_in(bounds_)};
+  while (waiting > 0) {
+    auto [node, part] = later[--waiting];
+    while (!part.empty() && node < leaves()) {
+      const int axis = static_cast<int>(nodes_[node].axis);
+      const BeamPart right = beam.above(part, axis, nodes_[node].split);
+      later[waiting] = {2 * node + 1, right};
+      waiting += !right.empty();
+      part = beam.below(part, axis, nodes_[node].split);
+      node = 2 * node;
+    }
+    if (part.empty()) continue;
+    const std::size_t block = node - leaves();
+    const BeamLanes lanes = lanes_in(block, beam);
+    for (std::size_t k = 0; k < lanes.count; ++k) {
+      const std::uint32_t lane = lanes.lane[k];
+      visit(lanes.distance[lane], lanes.across[lane], lights_[block * kBlock + lane]);
+    }
+  }
 }
 
 template <typename Accept>
