@@ -86,6 +86,11 @@ class SceneBuilder {
     description_.shapes.back().interior_medium = medium;
     return *this;
   }
+  // What lies before it.
+  SceneBuilder& exterior(int medium) {
+    description_.shapes.back().exterior_medium = medium;
+    return *this;
+  }
   // The camera stands in it.
   SceneBuilder& camera_in(int medium) {
     description_.camera.medium = medium;

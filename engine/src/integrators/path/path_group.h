@@ -43,13 +43,16 @@ struct PendingLight {
 // What a group of paths asks of photons when there are none.
 class WithoutPhotons {
  public:
+  static constexpr bool kInMedia = false;  // whether gather_along() may find any
   // What each path carries.
   struct State {};
   State start(const CameraSample&) const { return {}; }
   void arrive(State&, float) const {}
   bool ended(const State&) const { return false; }  // the path sees what emits where it is, and no more
   void gather(const State&, const PathVertex&, int, const Rgb&, const LightHistory&, SampleResult&) {}
+  void gather_along(const State&, const Ray&, const HomogeneousMedium&, int, const Rgb&, const LightHistory&, SampleResult&) {}
   void scatter(State&, const BsdfSample&) const {}
+  void scatter_in_medium(State&, float) const {}
   // Parts that they leave to the path.
   float left_of_map(const State&, Vec3f) const { return 1; }
   float left_of_found(const State&, const AreaEmitter&, const SurfacePoint&, Vec3f) const { return 1; }

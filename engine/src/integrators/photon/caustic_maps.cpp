@@ -32,18 +32,20 @@ PhotonSettings caustic_photon_settings(const Scene& scene) {
           .kinds = PhotonKinds::caustics()};
 }
 
-CausticMaps::CausticMaps(const Scene& scene, const ProjectionMap& projection, std::uint64_t seed, SampleRange samples, int threads,
+CausticMaps::CausticMaps(const Scene& scene, const ProjectionMap* projection, std::uint64_t seed, SampleRange samples, int threads,
                          const std::atomic<bool>& cancelled)
     : begin_(samples.begin),
       maps_(samples.size()),
+      media_maps_(samples.size()),
       radius_(static_cast<float>(static_cast<double>(scene.method().first_radius) * std::pow(samples.end, (kAlpha - 1) / 2))) {
-  if (projection.empty()) return;
+  if (projection != nullptr && projection->empty()) return;
   PhotonSettings settings = caustic_photon_settings(scene);
   for (std::uint32_t i = samples.begin; i < samples.end; ++i) {
     settings.seed = hash_words(seed, i);
-    const PhotonTracer tracer(scene, settings, projection);
+    const PhotonTracer tracer = projection != nullptr ? PhotonTracer(scene, settings, *projection) : PhotonTracer(scene, settings);
     const ShotPhotons shot = shoot_photons(scene, tracer, {0, settings.photons}, kMostStored, threads, cancelled);
     maps_[i - begin_] = PhotonMap(shot.photons, threads);
+    media_maps_[i - begin_] = PhotonMap(shot.in_media, threads);
     rays_ += shot.rays;
   }
 }

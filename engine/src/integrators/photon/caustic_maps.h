@@ -23,19 +23,20 @@ PhotonSettings caustic_photon_settings(const Scene& scene);
 
 class CausticMaps final : public PreparedPass {
  public:
-  // Shoots for the samples of one pass. `projection` is one for caustics. Throws as shoot_photons().
-  CausticMaps(const Scene& scene, const ProjectionMap& projection, std::uint64_t seed, SampleRange samples, int threads,
+  // Shoots for the samples of one pass. `projection` is one for caustics, or null for none. Throws as shoot_photons().
+  CausticMaps(const Scene& scene, const ProjectionMap* projection, std::uint64_t seed, SampleRange samples, int threads,
               const std::atomic<bool>& cancelled);
 
   // For sample `index` of any pixel.
   const PhotonMap& map(std::uint32_t index) const { return maps_[index - begin_]; }
+  const PhotonMap& in_media(std::uint32_t index) const { return media_maps_[index - begin_]; }
   // Of density estimates, over the side of what a pixel sees.
   float radius() const { return radius_; }
   std::uint64_t rays() const override { return rays_; }
 
  private:
   std::uint32_t begin_;
-  std::vector<PhotonMap> maps_;
+  std::vector<PhotonMap> maps_, media_maps_;
   float radius_;
   std::uint64_t rays_ = 0;
 };

@@ -6,7 +6,8 @@
 //
 // Good for: caustics, also of small and of point lights, and caustics seen through glass. Where nothing scatters sharply it is the
 // path tracer, and shoots nothing. Poor for: caustics much finer than a pixel's side in a few passes; light through small openings.
-// Participating media are not modelled.
+// In media it goes on from VolumePathIntegrator: collisions scatter like surfaces, and photons that collide are gathered along
+// every ray of a path.
 //
 // [KnausZwicker11] C. Knaus, M. Zwicker, "Progressive Photon Mapping: A Probabilistic Approach", ACM TOG 30(3), 2011.
 #pragma once
@@ -32,7 +33,7 @@ class PhotonProgressiveIntegrator final : public Integrator {
 
  private:
   const Scene* scene_ = nullptr;
-  std::optional<ProjectionMap> projection_;
+  std::optional<ProjectionMap> projection_;  // empty: photons start everywhere
 };
 
 }  // namespace fluxfarm
