@@ -32,7 +32,7 @@ inline Rgb scattered_within(const PhotonMap& map, Vec3f place, float radius, con
 // What a beam brings to its origin, W m^-2 sr^-1.
 struct BeamRadiance {
   Rgb value;
-  Rgb bias;  // of it, from what half the area of the beam brings: bias goes with the square of the radius
+  Rgb bias;  // of it, from what half the area of the beam brings
 };
 
 // By the photons in the beam that met fewer than `room` surfaces and collisions. What the medium would scatter sharply is left
@@ -48,7 +48,10 @@ inline BeamRadiance scattered_along(const PhotonMap& map, const Beam& beam, cons
     wide += scattered * kKernel.weight(across);
     if (across < 0.5f) narrow += scattered * (2 * kKernel.weight(2 * across));
   });
-  return {wide, (wide - narrow) * 2};
+  // A bias that goes with the radius, as at edges of the light, is sqrt(1/2) as large in half the area; one that goes with its
+  // square is half as large, and is thought to be 1.7 times what it is.
+  constexpr float kPerDifference = 1 / (1 - 0.70710678f);
+  return {wide, (wide - narrow) * kPerDifference};
 }
 
 }  // namespace fluxfarm
