@@ -109,6 +109,13 @@ TEST(AuditOutcome, IsLeftOutWhereItHasNothingToSay) {
   fog.interior(fog.medium({}));
   EXPECT_EQ(audit_need(Scene(fog.description(), 1)).kind, AuditNeed::kNotPossible);
   EXPECT_EQ(audit_light(Scene(fog.description(), 1), {0, 0, 4, 4}, 0, 1, kNever).outcome, LightAudit::kNotPossible);
+
+  // With a point and glass paths may miss anything; photons do not.
+  fog.emitter(PointEmitterDescription{{0, 0.5f, 0}, Rgb{1}});
+  fog.shape(SphereDescription{{0, 0, 0}, 0.1f}, fog.add(DielectricDescription{}));
+  const Scene caustics(fog.description(), 1);
+  EXPECT_EQ(audit_light(caustics, {0, 0, 4, 4}, 0, 1, kNever).outcome, LightAudit::kNotPossibleWithUnreachable);
+  EXPECT_EQ(audit_light(caustics, {0, 0, 4, 4}, 0, 1, kNever, true).outcome, LightAudit::kNotPossible);
 }
 
 // A bulb and, somewhere, a boundary that light passes: the picture is black, and nobody can say so.

@@ -172,7 +172,7 @@ LightAudit audit_light(const Scene& scene, PixelRect crop, std::uint64_t seed, i
   const AuditNeed need = audit_need(scene);
   LightAudit audit;
   if (need.kind == AuditNeed::kNotPossible) {
-    audit.outcome = need.unreachable ? LightAudit::kNotPossibleWithUnreachable : LightAudit::kNotPossible;
+    audit.outcome = need.unreachable && !finds_caustics ? LightAudit::kNotPossibleWithUnreachable : LightAudit::kNotPossible;
     return audit;
   }
   const std::vector<PixelRect> rects = make_tiles(crop, kErrorTile);
