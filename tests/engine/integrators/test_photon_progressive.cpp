@@ -196,7 +196,7 @@ TEST(PhotonProgressive, BiasIsKnown) {
       }
     }
   }
-  EXPECT_GT(real, 0.25 * noise);               // otherwise this tests nothing
+  EXPECT_GT(real, 0.25 * noise);              // otherwise this tests nothing
   EXPECT_GT(std::sqrt(claimed / real), 0.7);  // half of it is claimed where bias is thought to go with the squared radius
   EXPECT_LT(std::sqrt(claimed / real), 1.5);
 }
