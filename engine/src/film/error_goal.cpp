@@ -225,6 +225,7 @@ ErrorLook look_at(const Film& film, const ErrorGoal& goal, int number, const Lig
   const PixelRect crop = film.crop();
   const std::vector<PixelRect> rects = make_tiles(crop, kErrorTile);
   std::vector<TileError> tiles;
+  tiles.reserve(rects.size());
   for (const PixelRect& rect : rects) tiles.push_back(measure(film, rect));
   pool(tiles, (crop.width + kErrorTile - 1) / kErrorTile);
   ErrorLook look;

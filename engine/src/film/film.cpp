@@ -180,7 +180,7 @@ double Film::bias_share(int x, int y) const {
   const Pixel& p = pixel(x, y);
   const PixelMean m = pixel_mean(p.radiance, p.samples);
   const double* sums = bias_sums_.data() + index(x, y) * kBiasHalves * 3;
-  const double odd = p.samples / kBiasHalves, even = p.samples - odd;
+  const std::uint32_t odd = p.samples / kBiasHalves, even = p.samples - odd;
   double share = 0;
   for (int c = 0; c < 3; ++c) share += sums[c] / even * (sums[3 + c] / odd) / (m.mean[c] * m.mean[c] + 1e-2);
   return share / 3;
