@@ -100,8 +100,8 @@ std::string unseen_warning(const UnseenError& unseen, double goal) {
        << std::lround(100 * unseen.energy) << " % of the picture's light is missing";
   if (unseen.energy == 0) text << " where surfaces are seen directly, and an unknown part in mirrors and glass";
   text << (never
-               ? "; point, spot and directional emitters shine over mirrors or through glass: give them a size, as a small sphere "
-                 "or disk, or take the smooth surfaces out of their way; this version has no method with photons"
+               ? "; point, spot and directional emitters shine over mirrors or through glass: ask for integrator "
+                 "photon-progressive, which finds such light, or give them a size, as a small sphere or disk"
                : "; it arrives over paths that are hardly ever sampled: enlarge the emitters or openings that it comes through, or "
                  "judge a long picture with a goal of samples yourself");
   return text.str();
@@ -113,8 +113,8 @@ std::string unaudited_warning() {
 
 std::string unclaimed_warning() {
   return "goal not reached: light that path tracing cannot find may be missing, for point, spot and directional emitters may shine "
-         "over mirrors or through glass, and scenes with media or null boundaries are not audited for it: give these emitters a "
-         "size, as a small sphere or disk, or do without smooth surfaces";
+         "over mirrors or through glass, and scenes with media or null boundaries are not audited for it: ask for "
+         "integrator photon-progressive, which finds such light, or give these emitters a size, as a small sphere or disk";
 }
 
 }  // namespace fluxfarm
