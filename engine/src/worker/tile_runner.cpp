@@ -19,13 +19,15 @@ constexpr std::size_t kBatch = 512;
 // Sums of one pixel over the pass, in sample order.
 class PixelSums {
  public:
-  explicit PixelSums(LightLayers layers) : kept_(layers.list()), summed_(kept_) { std::erase(summed_, LightLayer::kIndirect); }
+  PixelSums(LightLayers layers, bool biased) : kept_(layers.list()), summed_(kept_), biased_(biased) {
+    std::erase(summed_, LightLayer::kIndirect);
+  }
 
   void clear() { sums_ = {}; }
 
   void add(const SampleResult& result, std::uint32_t slot, std::uint32_t bias_half) {
     add_to(sums_.radiance[slot], result.radiance);
-    add_to(sums_.bias[bias_half], result.bias);
+    if (biased_) add_to(sums_.bias[bias_half], result.bias);
     for (const LightLayer layer : summed_) add_to(sums_.layers[index_of(layer)], result.layers[index_of(layer)]);
     if (!result.hit) return;
     const float values[kFeatures] = {result.albedo.r, result.albedo.g, result.albedo.b, result.normal.x,
@@ -41,7 +43,7 @@ class PixelSums {
     write(sums_.features, tile.features.data() + index * kFeatures);
     float* layers = tile.layer_sums.data() + index * kept_.size() * 3;
     for (const LightLayer layer : kept_) layers = write(sums_.layers[index_of(layer)], layers);
-    if (!tile.biased) return;
+    if (!biased_) return;
     float* bias = tile.bias_sums.data() + index * kBiasHalves * 3;
     for (const Sum& half : sums_.bias) bias = write(half, bias);
   }
@@ -76,6 +78,7 @@ class PixelSums {
   }
 
   std::vector<LightLayer> kept_, summed_;  // the tile's; all but the indirect one
+  bool biased_;                            // as the tile
   struct Sums {
     std::array<Sum, kFilmReplicates> radiance{};
     std::array<double, kFeatures> features{};
@@ -104,7 +107,7 @@ TileSums render_tile(const Scene& scene, const Integrator& integrator, const Til
   std::vector<CameraSample> batch;
   batch.reserve(std::max(kBatch, per_pixel));
   std::vector<SampleResult> results(batch.capacity());
-  PixelSums pixel(sums.layers);
+  PixelSums pixel(sums.layers, sums.biased);
   // Sums what came back for the pixel whose samples begin at `first`.
   const auto sum_up = [&](std::size_t first) {
     const CameraSample& at = batch[first];
