@@ -166,6 +166,26 @@ TEST(PhotonProgressive, BitsDependOnNeitherThreadsNorTiles) {
   EXPECT_NE(one.estimate(20, 20).mean, render(scene, "photon-progressive", 5, 4).estimate(20, 20).mean);
 }
 
+// Where nothing scatters sharply it is the path tracer, bit by bit, with no bias and no photon; with a ball of glass it is not.
+TEST(PhotonProgressive, IsPathTracingWhereNothingIsGlossy) {
+  SceneBuilder builder;
+  builder.floor(0, 3, builder.diffuse(0.5f)).lamp_down(0, 2, 0, 1, 1, builder.diffuse(0.2f), 3);
+  const SceneDescription dull = seen(builder, {2, 1, 0}, {0, 0, 0}, 0.1, 16);
+  builder.shape(SphereDescription{{0.5f, 0.5f, 0}, 0.3f}, builder.add(DielectricDescription{1.5f}));
+  const SceneDescription glossy = seen(builder, {2, 1, 0}, {0, 0, 0}, 0.1, 16);
+  const auto alike = [](const SceneDescription& description) {
+    const Scene scene(description, 1);
+    const Film photons = render(scene, "photon-progressive", 5, 3), paths = render(scene, "path", 5, 3);
+    bool same = photons.biased() == paths.biased();
+    for (int y = 0; y < 16; ++y) {
+      for (int x = 0; x < 16; ++x) same &= photons.estimate(x, y).mean == paths.estimate(x, y).mean;
+    }
+    return same;
+  };
+  EXPECT_TRUE(alike(dull));
+  EXPECT_FALSE(alike(glossy));
+}
+
 // What the second radius says of the bias is the bias: at the edge of a spot of light, where it is large.
 TEST(PhotonProgressive, BiasIsKnown) {
   SceneBuilder builder;

@@ -57,6 +57,35 @@ TEST(MaterialNeeds, OfDeltaLobesAreThoseThatSamplingShows) {
   EXPECT_TRUE(needs({MaskDescription{1, {0.5f}}, PlasticDescription{}}).delta_lobes);
 }
 
+// Photons of caustics are shot at glossy surfaces alone: what is not glossy may scatter nothing sharply.
+TEST(MaterialNeeds, OfGlossAreThoseThatScatterMoreNarrowlyThanADiffuseSurface) {
+  std::vector<testing::MaterialCase> cases = testing::continuous_cases();
+  cases.push_back({"principled", PrincipledDescription{}});
+  cases.push_back({"gltf", GltfDescription{}});
+  cases.push_back({"dielectric", DielectricDescription{}});
+  cases.push_back({"thindielectric", ThinDielectricDescription{}});
+  cases.push_back({"conductor", testing::gold()});
+  cases.push_back({"null", NullDescription{}});
+  int dull = 0;
+  for (const testing::MaterialCase& c : cases) {
+    if (needs({c.description}).glossy) continue;
+    ++dull;
+    const std::unique_ptr<Bsdf> bsdf = testing::make(c.description);
+    for (int i = 0; i < 1024; ++i) {
+      const float u = (static_cast<float>(i) + 0.5f) / 1024;
+      const std::optional<BsdfSample> s = bsdf->sample(testing::direction(u, 1), u, {u, 32 * u - std::floor(32 * u)});
+      if (!s || s->passes) continue;
+      EXPECT_FALSE(s->delta) << c.name;
+      EXPECT_LE(max_component(s->weight) * s->pdf / std::fabs(s->wi.z), 0.3184f) << c.name;  // 1 / pi
+    }
+  }
+  EXPECT_EQ(dull, 2);  // diffuse and null
+  EXPECT_TRUE(needs({TwosidedDescription{1, 2}, DiffuseDescription{}, PlasticDescription{}}).glossy);
+  EXPECT_TRUE(needs({BlendDescription{1, 2, {0.5f}}, DiffuseDescription{}, RoughConductorDescription{}}).glossy);
+  EXPECT_TRUE(needs({NormalMapDescription{1, 0}, DiffuseDescription{}}).glossy);
+  EXPECT_TRUE(needs({BumpMapDescription{1, 0, 1}, DiffuseDescription{}}).glossy);
+}
+
 TEST(MaterialNeeds, OfGltfAreVertexColorsWhereItShowsThem) {
   GltfDescription d;
   EXPECT_FALSE(needs({d}).vertex_colors || needs({d}).uvs);

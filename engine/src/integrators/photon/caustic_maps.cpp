@@ -38,7 +38,6 @@ CausticMaps::CausticMaps(const Scene& scene, const ProjectionMap* projection, st
       maps_(samples.size()),
       media_maps_(samples.size()),
       radius_(static_cast<float>(static_cast<double>(scene.method().first_radius) * std::pow(samples.end, (kAlpha - 1) / 2))) {
-  if (projection != nullptr && projection->empty()) return;
   PhotonSettings settings = caustic_photon_settings(scene);
   for (std::uint32_t i = samples.begin; i < samples.end; ++i) {
     settings.seed = hash_words(seed, i);

@@ -23,7 +23,8 @@ PhotonSettings caustic_photon_settings(const Scene& scene);
 
 class CausticMaps final : public PreparedPass {
  public:
-  // Shoots for the samples of one pass. `projection` is one for caustics, or null for none. Throws as shoot_photons().
+  // Shoots for the samples of one pass. `projection` is one for caustics and not empty, or null for none. Throws as
+  // shoot_photons().
   CausticMaps(const Scene& scene, const ProjectionMap* projection, std::uint64_t seed, SampleRange samples, int threads,
               const std::atomic<bool>& cancelled);
 

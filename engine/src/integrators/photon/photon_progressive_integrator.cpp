@@ -32,16 +32,20 @@ void trace_groups(Group& group, std::span<const CameraSample> samples, std::uint
 void PhotonProgressiveIntegrator::prepare(const Scene& scene) {
   const PhotonTracer checked(scene, caustic_photon_settings(scene));
   scene_ = &scene;
-  if (!has_sharp_media(scene)) projection_.emplace(caustic_projection(scene, caustic_photon_settings(scene)));
+  if (has_sharp_media(scene)) return;
+  projection_.emplace(caustic_projection(scene, caustic_photon_settings(scene)));
+  if (projection_->empty()) paths_ = make_integrator("path", scene);
 }
 
 std::shared_ptr<const PreparedPass> PhotonProgressiveIntegrator::prepare_pass(std::uint64_t seed, SampleRange samples, int threads,
                                                                               const std::atomic<bool>& cancelled) const {
+  if (paths_) return nullptr;
   return std::make_shared<CausticMaps>(*scene_, projection_ ? &*projection_ : nullptr, seed, samples, threads, cancelled);
 }
 
 void PhotonProgressiveIntegrator::radiance(std::span<const CameraSample> samples, std::uint64_t seed, const PreparedPass* pass,
                                            std::span<SampleResult> results, RayQueries& queries) const {
+  if (paths_) return paths_->radiance(samples, seed, pass, results, queries);
   const auto& maps = *static_cast<const CausticMaps*>(pass);
   if (scene_->census().media > 0 || scene_->census().null_boundaries) {
     VolumePathGroup<CausticPhotons> group(*scene_, {*scene_, maps}, queries);

@@ -22,7 +22,7 @@ namespace fluxfarm {
 class PhotonProgressiveIntegrator final : public Integrator {
  public:
   const char* name() const override { return "photon-progressive"; }
-  Bias bias() const override { return Bias::kFalling; }
+  Bias bias() const override { return paths_ ? Bias::kNone : Bias::kFalling; }
   bool finds_caustics() const override { return true; }
   // Throws SettingError if the scene has nothing to shoot or to shoot at.
   void prepare(const Scene& scene) override;
@@ -33,7 +33,8 @@ class PhotonProgressiveIntegrator final : public Integrator {
 
  private:
   const Scene* scene_ = nullptr;
-  std::optional<ProjectionMap> projection_;  // empty: photons start everywhere
+  std::optional<ProjectionMap> projection_;  // nothing: photons start everywhere
+  std::unique_ptr<Integrator> paths_;        // does all the work where no photon can become a caustic; else null
 };
 
 }  // namespace fluxfarm
