@@ -122,22 +122,19 @@ nlohmann::json bench_photons(const Scene& scene, int threads) {
   NearestPhotons found;
   for (std::size_t i = 0; i < places.size(); i += 100) {
     const SurfacePatch patch(places[i], kFar);
-    radii.push_back(
-        static_cast<double>(estimate_by_nearest(map, patch, kNearest, kFar, BoxKernel{}, AsIrradiance{}, found).radius));
+    radii.push_back(static_cast<double>(estimate_by_nearest(map, patch, kNearest, kFar, BoxKernel{}, found).radius));
   }
   const auto radius = static_cast<float>(median(radii));
   const auto nearest_rate = [&] {
     return rate(places, threads, [&] {
       return [&, workspace = NearestPhotons()](const PathVertex& place) mutable {
-        return estimate_by_nearest(map, {place, kFar}, kNearest, kFar, BoxKernel{}, AsIrradiance{}, workspace).value;
+        return estimate_by_nearest(map, {place, kFar}, kNearest, kFar, BoxKernel{}, workspace).value;
       };
     });
   };
   const auto within_rate = [&] {
     return rate(places, threads, [&] {
-      return [&](const PathVertex& place) {
-        return estimate_within(map, {place, radius}, radius, BoxKernel{}, AsIrradiance{}).value;
-      };
+      return [&](const PathVertex& place) { return estimate_within(map, {place, radius}, radius, BoxKernel{}).value; };
     });
   };
   std::vector<double> nearest_rates, within_rates;

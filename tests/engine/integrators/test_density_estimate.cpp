@@ -65,7 +65,7 @@ double unguarded(const PhotonMap& map, Vec3f position, float radius) {
 }
 
 double guarded(const PhotonMap& map, Vec3f position, float radius) {
-  return static_cast<double>(estimate_within(map, floor_patch(position, radius), radius, BoxKernel{}, AsIrradiance{}).value.g);
+  return static_cast<double>(estimate_within(map, floor_patch(position, radius), radius, BoxKernel{}).value.g);
 }
 
 // ---------------------------------------------------------------- P2
@@ -128,8 +128,7 @@ NearestMeans nearest_means(std::size_t k) {
     for (double x = -0.8; x <= 0.8; x += step) {
       for (double z = -0.8; z <= 0.8; z += step, ++places) {
         const Vec3f place{static_cast<float>(x), 0, static_cast<float>(z)};
-        const DensityEstimate e =
-            estimate_by_nearest(map, floor_patch(place, kFar), k, kFar, BoxKernel{}, AsIrradiance{}, workspace);
+        const DensityEstimate e = estimate_by_nearest(map, floor_patch(place, kFar), k, kFar, BoxKernel{}, workspace);
         EXPECT_EQ(e.photons, k - 1);
         estimate += static_cast<double>(e.value.g);
         raw += static_cast<double>(k) * 4.8 / kPhotons / (M_PI * static_cast<double>(e.radius) * static_cast<double>(e.radius));
@@ -163,8 +162,8 @@ TEST(DensityEstimate, P3_MixesWithALargestRadiusWithoutBias) {
       int places = 0;
       for (float x = -0.8f; x <= 0.8f; x += 0.04f) {
         for (float z = -0.8f; z <= 0.8f; z += 0.04f, ++places) {
-          const DensityEstimate e = estimate_by_nearest(map, floor_patch({x, 0, z}, kFar), kNearest, radius, EpanechnikovKernel{},
-                                                        AsIrradiance{}, workspace);
+          const DensityEstimate e =
+              estimate_by_nearest(map, floor_patch({x, 0, z}, kFar), kNearest, radius, EpanechnikovKernel{}, workspace);
           const bool full = e.photons == kNearest - 1 && e.radius < radius;
           sum += static_cast<double>(e.value.g) * (all_counted && full ? 10.0 / 9 : 1.0);
         }
@@ -187,9 +186,8 @@ Measurement floor_mean(Kernel kernel) {
     int places = 0;
     for (float x = -0.8f; x <= 0.8f; x += 0.1f) {
       for (float z = -0.8f; z <= 0.8f; z += 0.1f, places += 2) {
-        sum += static_cast<double>(estimate_within(map, floor_patch({x, 0, z}, 0.05f), 0.05f, kernel, AsIrradiance{}).value.g);
-        sum += static_cast<double>(
-            estimate_by_nearest(map, floor_patch({x, 0, z}, kFar), 40, kFar, kernel, AsIrradiance{}, workspace).value.g);
+        sum += static_cast<double>(estimate_within(map, floor_patch({x, 0, z}, 0.05f), 0.05f, kernel).value.g);
+        sum += static_cast<double>(estimate_by_nearest(map, floor_patch({x, 0, z}, kFar), 40, kFar, kernel, workspace).value.g);
       }
     }
     return sum / places;
@@ -216,7 +214,7 @@ TEST(DensityEstimate, BlurIsTheKernelsConstantTimesTheLaplacian) {
   }
   const PhotonMap map(photons, 2);
   const auto blur = [&](auto kernel) {
-    return static_cast<double>(estimate_within(map, floor_patch({}, 0.5f), 0.5f, kernel, AsIrradiance{}).value.g) - 1;
+    return static_cast<double>(estimate_within(map, floor_patch({}, 0.5f), 0.5f, kernel).value.g) - 1;
   };
   EXPECT_NEAR(blur(BoxKernel{}), BoxKernel::kBias * 0.25 * 4, 3e-3);
   EXPECT_NEAR(blur(EpanechnikovKernel{}), EpanechnikovKernel::kBias * 0.25 * 4, 3e-3);
@@ -235,7 +233,7 @@ TEST(DensityEstimate, P7_TheBackOfAPlateCountsForNothing) {
   const PhotonMap both(photons, 1);
   NearestPhotons workspace;
   const auto estimate = [&](const PhotonMap& map, PhotonSide side) {
-    return estimate_by_nearest(map, floor_patch({}, kFar, side), 50, kFar, BoxKernel{}, AsIrradiance{}, workspace);
+    return estimate_by_nearest(map, floor_patch({}, kFar, side), 50, kFar, BoxKernel{}, workspace);
   };
   const DensityEstimate alone = estimate(front_alone, PhotonSide::kFront), guarded_one = estimate(both, PhotonSide::kFront);
   EXPECT_EQ(guarded_one.radius, alone.radius);
@@ -353,7 +351,7 @@ TEST(DensityEstimate, G2_IntegratingSphereOfAColour) {
     const PhotonMap map(shoot(scene, {.photons = 20000, .seed = seed, .kinds = PhotonKind::kIndirect}).photons, 2);
     Rgb sum;
     for (const Vec3f n : {Vec3f{1, 0, 0}, Vec3f{-1, 0, 0}, Vec3f{0, 1, 0}, Vec3f{0, -1, 0}, Vec3f{0, 0, 1}, Vec3f{0, 0, -1}}) {
-      sum += estimate_within(map, SurfacePatch(n, -n, PhotonSide::kFront, 0.38f), 0.38f, BoxKernel{}, AsIrradiance{}).value;
+      sum += estimate_within(map, SurfacePatch(n, -n, PhotonSide::kFront, 0.38f), 0.38f, BoxKernel{}).value;
     }
     for (std::size_t c = 0; c < 3; ++c) values[c].push_back(static_cast<double>(std::array{sum.r, sum.g, sum.b}[c]) / 6);
   }

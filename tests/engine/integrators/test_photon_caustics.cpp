@@ -30,7 +30,7 @@ Measurement caustic_at(const SceneDescription& description, float x, float radiu
     const PhotonSettings settings{.photons = photons, .seed = seed, .max_bounces = max_bounces, .kinds = PhotonKind::kCaustic};
     const PhotonMap map(shoot(scene, settings).photons, 2);
     const SurfacePatch patch({x, 0, 0}, {0, 1, 0}, PhotonSide::kFront, radius);
-    return static_cast<double>(estimate_within(map, patch, radius, EpanechnikovKernel{}, AsIrradiance{}).value.g);
+    return static_cast<double>(estimate_within(map, patch, radius, EpanechnikovKernel{}).value.g);
   });
 }
 

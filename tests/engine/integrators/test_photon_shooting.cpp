@@ -1,4 +1,4 @@
-// Where photons start, where they land and where their flux goes: catalogue P1, P8, P9, and the irradiance that each kind of
+// Where photons start, where they land and where their flux goes: catalogue P1, P8, and the irradiance that each kind of
 // emitter brings, D1, D2, D6, D7.
 #include <gtest/gtest.h>
 
@@ -238,52 +238,6 @@ TEST(PhotonEmission, PhotonsOfOneEmitterAreEquallyStrong) {
   for (const Photon& photon : shot.photons) {
     EXPECT_NEAR(static_cast<double>(photon.light.flux().g), kPower / 1000, kPower / 1000 / 127);
   }
-}
-
-// A mirror under a bright lamp, so that only that one makes a caustic; and fifty dim lamps elsewhere, as strong together.
-SceneDescription fifty_and_one(bool dim_ones) {
-  SceneBuilder builder;
-  builder.floor(0, 20, builder.diffuse(0));
-  builder.shape(
-      RectangleDescription{Transform::translate(0, 0.5, 0) * Transform::rotate(1, 0, 0, -90) * Transform::scale(0.5, 0.5, 1)},
-      builder.add(ConductorDescription{.perfect = true}));
-  builder.shape(RectangleDescription{Transform::translate(0, 3, 0) * Transform::rotate(1, 0, 0, 90) * Transform::scale(5, 5, 1)},
-                builder.diffuse(0));
-  builder.emitter(SpotEmitterDescription{{0, 2, 0}, {0, -1, 0}, Rgb{1}, 10, 10});
-  for (int i = 0; dim_ones && i < 50; ++i) {
-    builder.emitter(SpotEmitterDescription{{10, 2, 0.2f * static_cast<float>(i)}, {0, -1, 0}, Rgb{0.02f}, 10, 10});
-  }
-  return builder.description();
-}
-
-// Standard deviation over mean of the flux of the caustic, from the number of equally strong photons that make it.
-double caustic_noise(const SceneDescription& description, const std::vector<double>& weights) {
-  const Scene scene(description, 1);
-  const PhotonSettings settings{.photons = 20000, .seed = 1, .kinds = PhotonKind::kCaustic};
-  const std::atomic<bool> never{false};
-  const PhotonTracer tracer(scene, settings, weights.empty() ? ParticleSource::powers(scene) : weights);
-  const auto shot = shoot_photons(scene, tracer, {0, settings.photons}, 1 << 20, 1, never);
-  return 1 / std::sqrt(static_cast<double>(shot.photons.size()));
-}
-
-TEST(PhotonEmission, P9_BudgetsKeepTheCausticOfOneLampAmongFifty) {
-  const double alone = caustic_noise(fifty_and_one(false), {});
-  EXPECT_LT(caustic_noise(fifty_and_one(true), {}), 1.5 * alone);
-  std::vector<double> even(51, 1.0);
-  EXPECT_GT(caustic_noise(fifty_and_one(true), even), 1.5 * alone);  // without regard to power
-  even[0] = 50;
-  EXPECT_LT(caustic_noise(fifty_and_one(true), even), 1.5 * alone);  // a budget of its own
-}
-
-TEST(PhotonEmission, BudgetsDoNotChangeTheMean) {
-  const Scene scene(fifty_and_one(true), 1);
-  std::vector<double> weights(51, 1.0);
-  weights[0] = 10;
-  const std::atomic<bool> never{false};
-  const PhotonTracer tracer(scene, {.photons = 100000, .seed = 1}, weights);
-  double power = 0;
-  for (const double watt : ParticleSource::powers(scene)) power += watt;
-  EXPECT_NEAR(shoot_photons(scene, tracer, {0, 100000}, 1 << 20, 1, never).ledger.emitted / power, 1, 1e-3);
 }
 
 // ---------------------------------------------------------------- kinds

@@ -3,8 +3,7 @@
 
 #include <cmath>
 
-#include "integrators/photon/density_estimate.h"
-#include "integrators/photon/density_kernel.h"
+#include "integrators/photon/scattered_photons.h"
 #include "integrators/photon_scenes.h"
 
 namespace fluxfarm {
@@ -17,7 +16,7 @@ using testing::replicated;
 using testing::SceneBuilder;
 using testing::shoot;
 
-// Radiance of a floor under a beam from `direction`, by photons and by its BSDF alone.
+// Radiance of a floor under a beam from `direction`, by photons and by its BSDF alone: the part that is not scattered sharply.
 struct RadiancePair {
   Measurement photons;
   double expected;
@@ -31,14 +30,19 @@ RadiancePair floor_radiance(SceneBuilder& builder, Vec3f direction) {
   RayQueries(scene.accelerator()).intersect({&ray, 1}, {&hit, 1}, false);
   BsdfSpace space;
   const PathVertex vertex(scene, ray, hit, space);
+  NearestPhotons nearest;
   RadiancePair pair;
   pair.photons = replicated([&](std::uint64_t seed) {
     const PhotonMap map(shoot(scene, {.photons = 60000, .seed = seed, .max_bounces = 1}).photons, 2);
-    return static_cast<double>(
-        estimate_within(map, SurfacePatch(vertex, 0.2f), 0.2f, EpanechnikovKernel{}, AsRadiance(vertex)).value.g);
+    ScatteredPhotons scattered(vertex);
+    const float radius_squared = scattered.add_nearest(map, SurfacePatch(vertex, 0.2f), map.size() + 1, 0.2f, 2, nearest);
+    SampleResult result;
+    scattered.add_to(result, Rgb{1}, radius_squared, {});
+    return static_cast<double>(result.radiance.g);
   });
   const Vec3f wi = vertex.frame.to_local(-direction);
-  pair.expected = 2 * static_cast<double>(vertex.bsdf->value(vertex.wo, wi).f.g * std::fabs(wi.z));
+  const Rgb f = vertex.bsdf->value(vertex.wo, wi).f;
+  pair.expected = 2 * static_cast<double>(f.g * std::fabs(wi.z) * (1 - sharpness(1 / max_component(f))));
   return pair;
 }
 

@@ -248,6 +248,19 @@ TEST(VolumePhotons, BeamsFindAllPhotonsInThem) {
 
 // ---------------------------------------------------------------- M6
 
+// What each metre of a ray in `direction` gets at `place`, W m^-3 sr^-1, by the photons in a ball.
+//
+// [Jensen98] H. W. Jensen, P. H. Christensen, "Efficient Simulation of Light Transport in Scenes with Participating Media using
+// Photon Maps", SIGGRAPH 1998.
+Rgb scattered_within(const PhotonMap& map, Vec3f place, float radius, const PhaseFunction& phase, Vec3f direction) {
+  Rgb sum;
+  map.for_each_within(place, radius, [&](Vec3f d, const PhotonLight& light) {
+    const float weight = 2.5f * (1 - length_squared(d) / (radius * radius));  // of mean one over the ball
+    sum += light.flux() * (weight * phase.value(direction, normalize(light.wi())));
+  });
+  return sum / (4 * kPi / 3 * radius * radius * radius);
+}
+
 TEST(VolumePhotons, M6_BallAndBeamAreExactInAnEvenField) {
   std::vector<PhotonMap> maps;
   for (std::uint64_t seed = 1; seed <= kReplicates; ++seed) maps.push_back(even_cube(200000, seed));

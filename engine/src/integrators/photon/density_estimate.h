@@ -12,77 +12,70 @@
 #include <cmath>
 #include <cstdint>
 
-#include "integrators/path/path_vertex.h"
 #include "integrators/photon/nearest_photons.h"
 #include "integrators/photon/photon_map.h"
 #include "integrators/photon/surface_patch.h"
 
 namespace fluxfarm {
 
+// Irradiance by photons.
 struct DensityEstimate {
-  Rgb value;                  // of irradiance W m^-2, of radiance W m^-2 sr^-1
+  Rgb value;                  // W m^-2
   std::uint32_t photons = 0;  // that were counted
   float radius = 0;           // m
 };
 
-// What the flux of a photon counts for: irradiance.
-struct AsIrradiance {
-  Rgb operator()(const PhotonLight&) const { return Rgb{1}; }
-};
-
-// Or radiance towards vertex.wo. Flux over area holds the cosine to the geometric normal, scattering the one to the shading normal.
-class AsRadiance {
- public:
-  explicit AsRadiance(const PathVertex& vertex) : vertex_(vertex) {}
-
-  Rgb operator()(const PhotonLight& light) const {
-    const Vec3f world = normalize(light.wi()), wi = vertex_.frame.to_local(world);
-    const float arriving = std::fabs(dot(world, vertex_.point.geometric_normal));
-    if (!(arriving > 0)) return {};
-    return vertex_.bsdf->value(vertex_.wo, wi).f * (std::fabs(wi.z) / arriving);
-  }
-
- private:
-  const PathVertex& vertex_;
-};
-
 // By all photons within `radius` (m).
-template <typename Kernel, typename Response>
-DensityEstimate estimate_within(const PhotonMap& map, const SurfacePatch& patch, float radius, const Kernel& kernel,
-                                const Response& response) {
+template <typename Kernel>
+DensityEstimate estimate_within(const PhotonMap& map, const SurfacePatch& patch, float radius, const Kernel& kernel) {
   DensityEstimate estimate{.value = {}, .photons = 0, .radius = radius};
   const float per_radius_squared = 1 / (radius * radius);
   map.for_each_within(patch.position(), radius, [&](Vec3f d, const PhotonLight& light) {
     if (!patch.accepts(d, light)) return;
-    estimate.value += light.flux() * response(light) * kernel.weight(length_squared(d) * per_radius_squared);
+    estimate.value += light.flux() * kernel.weight(length_squared(d) * per_radius_squared);
     ++estimate.photons;
   });
   estimate.value *= kInvPi * per_radius_squared;
   return estimate;
 }
 
-// By the nearest `count` photons (at least 2), of which the farthest sets the radius, or by all within `max_radius` (m) if those
-// are fewer. `nearest` is workspace: keep it from one call to the next.
-template <typename Kernel, typename Response>
-DensityEstimate estimate_by_nearest(const PhotonMap& map, const SurfacePatch& patch, std::size_t count, float max_radius,
-                                    const Kernel& kernel, const Response& response, NearestPhotons& nearest) {
-  nearest.start(count, max_radius * max_radius);
-  map.find_nearest(
-      patch.position(), [&](Vec3f d, const PhotonLight& light) { return patch.accepts(d, light); }, nearest);
-  nearest.finish();
+// Calls visit(light, t), t = squared distance over squared radius of the disk, for each photon that counts among those for which
+// accept(d, light), d leading there from `position`: the nearest `count` (at least 2), of which the farthest sets the radius and is
+// not visited, or all within `max_radius` (m) if those are fewer. Returns the squared radius, m^2; 0 if there is no disk. `nearest`
+// is workspace: keep it from one call to the next.
+template <typename Accept, typename Visit>
+float for_each_nearest(const PhotonMap& map, Vec3f position, std::size_t count, float max_radius, const Accept& accept,
+                       NearestPhotons& nearest, const Visit& visit) {
   float radius_squared = max_radius * max_radius;
+  nearest.start(count, radius_squared);
+  map.find_nearest(position, accept, nearest);
+  nearest.finish();
   if (nearest.size() == count) {
     const std::size_t farthest = nearest.farthest();
     radius_squared = nearest.distances_squared()[farthest];
     nearest.remove(farthest);
   }
-  DensityEstimate estimate{.value = {}, .photons = static_cast<std::uint32_t>(nearest.size()), .radius = std::sqrt(radius_squared)};
-  if (!(radius_squared > 0)) return estimate;
+  if (!(radius_squared > 0)) return 0;
   for (std::size_t i = 0; i < nearest.size(); ++i) {
-    const PhotonLight& light = map.light(nearest.photons()[i]);
-    estimate.value += light.flux() * response(light) * kernel.weight(nearest.distances_squared()[i] / radius_squared);
+    visit(map.light(nearest.photons()[i]), nearest.distances_squared()[i] / radius_squared);
   }
+  return radius_squared;
+}
+
+// By the nearest `count` photons, as for_each_nearest().
+template <typename Kernel>
+DensityEstimate estimate_by_nearest(const PhotonMap& map, const SurfacePatch& patch, std::size_t count, float max_radius,
+                                    const Kernel& kernel, NearestPhotons& nearest) {
+  DensityEstimate estimate;
+  const float radius_squared = for_each_nearest(
+      map, patch.position(), count, max_radius, [&](Vec3f d, const PhotonLight& light) { return patch.accepts(d, light); }, nearest,
+      [&](const PhotonLight& light, float t) {
+        estimate.value += light.flux() * kernel.weight(t);
+        ++estimate.photons;
+      });
+  if (!(radius_squared > 0)) return {};
   estimate.value *= kInvPi / radius_squared;
+  estimate.radius = std::sqrt(radius_squared);
   return estimate;
 }
 

@@ -9,6 +9,11 @@
 
 namespace fluxfarm {
 
+// How large the bias of an estimate is, over its difference from that in half the area. A bias that goes with the radius, as at
+// edges of surfaces and shadows, is sqrt(1/2) as large there; one that goes with its square, as where light changes smoothly, is
+// half as large, and is thought to be 1.7 times what it is.
+inline constexpr float kBiasPerDifference = 1 / (1 - 0.70710678f);
+
 struct BoxKernel {
   static constexpr double kBias = 1.0 / 8, kVariance = 1;
   float weight(float) const { return 1; }
@@ -20,11 +25,6 @@ struct BoxKernel {
 struct EpanechnikovKernel {
   static constexpr double kBias = 1.0 / 12, kVariance = 4.0 / 3;
   float weight(float t) const { return 2 * (1 - t); }
-};
-
-// The same in space, t over the radius of a ball: its mean over the ball is one.
-struct EpanechnikovBallKernel {
-  float weight(float t) const { return 2.5f * (1 - t); }
 };
 
 // Smooth at its rim, too.                                                                          [Silverman86]

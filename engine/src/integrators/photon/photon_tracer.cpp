@@ -18,9 +18,10 @@
 namespace fluxfarm {
 namespace {
 
-const std::vector<double>& checked(const Scene& scene, const PhotonSettings& settings, const std::vector<double>& weights) {
+std::vector<double> checked_powers(const Scene& scene, const PhotonSettings& settings) {
+  std::vector<double> powers = ParticleSource::powers(scene);
   if (settings.photons == 0) throw SettingError("photons = 0, expected at least 1");
-  if (!(std::accumulate(weights.begin(), weights.end(), 0.0) > 0)) {
+  if (!(std::accumulate(powers.begin(), powers.end(), 0.0) > 0)) {
     throw SettingError("nothing in the scene emits light, expected an emitter to shoot photons from");
   }
   bool stores = false;
@@ -28,7 +29,7 @@ const std::vector<double>& checked(const Scene& scene, const PhotonSettings& set
   for (const HomogeneousMedium& medium : scene.media()) stores |= !medium.sigma_s().is_black();
   if (!stores)
     throw SettingError("all surfaces of the scene are smooth mirrors or glass, expected one that photons can be stored on");
-  return weights;
+  return powers;
 }
 
 double watt(Rgb flux) { return static_cast<double>(mean(flux)); }
@@ -246,18 +247,15 @@ class PhotonTracer::Group {
   std::array<Hit, kGroup> hits_;
 };
 
-PhotonTracer::PhotonTracer(const Scene& scene, const PhotonSettings& settings, const std::vector<double>& weights)
+PhotonTracer::PhotonTracer(const Scene& scene, const PhotonSettings& settings)
     : scene_(scene),
       settings_(settings),
-      source_(scene, checked(scene, settings, weights)),
+      source_(scene, checked_powers(scene, settings)),
       media_(scene.census().media > 0 || scene.census().null_boundaries) {
   for (std::uint32_t shape = 0; media_ && shape < scene.census().shapes; ++shape) {
     media_change_ |= scene.boundary(shape).separates;
   }
 }
-
-PhotonTracer::PhotonTracer(const Scene& scene, const PhotonSettings& settings)
-    : PhotonTracer(scene, settings, ParticleSource::powers(scene)) {}
 
 PhotonTracer::PhotonTracer(const Scene& scene, const PhotonSettings& settings, const ProjectionMap& projection)
     : PhotonTracer(scene, settings) {

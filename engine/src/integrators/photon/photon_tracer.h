@@ -45,10 +45,8 @@ class PhotonTracer {
   // Photons that are followed side by side.
   static constexpr std::size_t kGroup = 64;
 
-  // `weights`: parts of the emitters in the photons, as ParticleSource takes them. Throws SettingError if there is nothing to
-  // shoot, or nothing that could store it.
-  PhotonTracer(const Scene& scene, const PhotonSettings& settings, const std::vector<double>& weights);
-  // In proportion to power.
+  // From the emitters in proportion to their power. Throws SettingError if there is nothing to shoot, or nothing that could store
+  // it.
   PhotonTracer(const Scene& scene, const PhotonSettings& settings);
   // From the parts of the emitters that `projection` keeps and with its densities. It must outlive this, and be made for all
   // surfaces on which light may fall first to become one of the kinds.

@@ -6,6 +6,7 @@
 #include "integrators/integrator.h"
 #include "integrators/light_history.h"
 #include "integrators/path/path_vertex.h"
+#include "integrators/photon/density_estimate.h"
 #include "integrators/photon/density_kernel.h"
 #include "integrators/photon/nearest_photons.h"
 #include "integrators/photon/photon.h"
@@ -33,27 +34,14 @@ class ScatteredPhotons {
     if (t < 0.5f) narrower_ += scattered * (2 * kKernel.weight(2 * t));
   }
 
-  // Adds the nearest `count` photons, of which the farthest sets the radius and is not counted, or all within `max_radius` (m) if
-  // those are fewer: of those that `patch` accepts and that met fewer than `room` surfaces. `nearest` is workspace. Returns the
-  // squared radius, m^2.
+  // Adds the nearest `count` photons or all within `max_radius` (m), as for_each_nearest(), of those that `patch` accepts and that
+  // met fewer than `room` surfaces. Returns the squared radius, m^2.
   float add_nearest(const PhotonMap& map, const SurfacePatch& patch, std::size_t count, float max_radius, int room,
                     NearestPhotons& nearest) {
-    float radius_squared = max_radius * max_radius;
-    nearest.start(count, radius_squared);
-    map.find_nearest(
-        patch.position(), [&](Vec3f d, const PhotonLight& light) { return light.surfaces() < room && patch.accepts(d, light); },
-        nearest);
-    nearest.finish();
-    if (nearest.size() == count) {
-      const std::size_t farthest = nearest.farthest();
-      radius_squared = nearest.distances_squared()[farthest];
-      nearest.remove(farthest);
-    }
-    if (!(radius_squared > 0)) return 0;
-    for (std::size_t i = 0; i < nearest.size(); ++i) {
-      add(map.light(nearest.photons()[i]), nearest.distances_squared()[i] / radius_squared);
-    }
-    return radius_squared;
+    return for_each_nearest(
+        map, patch.position(), count, max_radius,
+        [&](Vec3f d, const PhotonLight& light) { return light.surfaces() < room && patch.accepts(d, light); }, nearest,
+        [&](const PhotonLight& light, float t) { add(light, t); });
   }
 
   // Adds it to what a path brings back that is weighted with `throughput`. `radius_squared` (m^2): of the disk; 0 adds nothing.
@@ -62,10 +50,7 @@ class ScatteredPhotons {
     const Rgb scale = throughput * (kInvPi / radius_squared);
     result.add(scale * smooth_, history.layer_by_caustic());
     result.add(scale * rough_, history.layer_by_indirect());
-    // In a disk of half the area a bias that goes with the radius, as at edges of surfaces and shadows, is sqrt(1/2) as large; one
-    // that goes with its square, as where light changes smoothly, is half as large, and is thought to be 1.7 times what it is.
-    constexpr float kPerDifference = 1 / (1 - 0.70710678f);
-    result.bias += scale * (smooth_ + rough_ - narrower_) * kPerDifference;
+    result.bias += scale * (smooth_ + rough_ - narrower_) * kBiasPerDifference;
   }
 
  private:

@@ -1,14 +1,12 @@
 // What photons in a medium tell about the light that it scatters: the sum of their flux over the volume that they lie in.
 //
-// [Jensen98]  H. W. Jensen, P. H. Christensen, "Efficient Simulation of Light Transport in Scenes with Participating Media using
-//             Photon Maps", SIGGRAPH 1998: the ball.
-// [Jarosz08]  W. Jarosz, M. Zwicker, H. W. Jensen, "The Beam Radiance Estimate for Volumetric Photon Mapping", Computer Graphics
-//             Forum 27(2), 2008: the beam.
+// [Jarosz08] W. Jarosz, M. Zwicker, H. W. Jensen, "The Beam Radiance Estimate for Volumetric Photon Mapping", Computer Graphics
+// Forum 27(2), 2008.
 //
 // Photons carry the flux that collisions scatter (photon_tracer.h): over volume it is the medium's scattering coefficient times the
-// light that crosses, so neither estimate asks for the coefficient. Biased: the light of the ball, or of the disk around a place of
-// the ray, is taken for that of its middle; the radius controls it. Near the border of a medium they are too small by the part
-// outside, and where two media meet they take photons of both.
+// light that crosses, so the estimate does not ask for the coefficient. Biased: the light of the disk around a place of the ray is
+// taken for that of its middle; the radius controls it. Near the border of a medium it is too small by the part outside, and where
+// two media meet it takes photons of both.
 #pragma once
 
 #include "integrators/photon/density_kernel.h"
@@ -17,17 +15,6 @@
 #include "media/homogeneous_medium.h"
 
 namespace fluxfarm {
-
-// What each metre of a ray in `direction` gets at `place`, W m^-3 sr^-1, by the photons within `radius` (m).
-inline Rgb scattered_within(const PhotonMap& map, Vec3f place, float radius, const PhaseFunction& phase, Vec3f direction) {
-  constexpr EpanechnikovBallKernel kKernel;
-  Rgb sum;
-  map.for_each_within(place, radius, [&](Vec3f d, const PhotonLight& light) {
-    const float weight = kKernel.weight(length_squared(d) / (radius * radius));
-    sum += light.flux() * (weight * phase.value(direction, normalize(light.wi())));
-  });
-  return sum / (4 * kPi / 3 * radius * radius * radius);
-}
 
 // What a beam brings to its origin, W m^-2 sr^-1.
 struct BeamRadiance {
@@ -48,10 +35,7 @@ inline BeamRadiance scattered_along(const PhotonMap& map, const Beam& beam, cons
     wide += scattered * kKernel.weight(across);
     if (across < 0.5f) narrow += scattered * (2 * kKernel.weight(2 * across));
   });
-  // A bias that goes with the radius, as at edges of the light, is sqrt(1/2) as large in half the area; one that goes with its
-  // square is half as large, and is thought to be 1.7 times what it is.
-  constexpr float kPerDifference = 1 / (1 - 0.70710678f);
-  return {wide, (wide - narrow) * kPerDifference};
+  return {wide, (wide - narrow) * kBiasPerDifference};
 }
 
 }  // namespace fluxfarm
