@@ -41,16 +41,6 @@ LightAudit AuditMemory::find(const Scene& scene, const Integrator& integrator, P
   return made_->audit;
 }
 
-std::shared_ptr<const PreparedPass> PassMemory::find(const Integrator& integrator, std::uint64_t seed, SampleRange samples,
-                                                     int threads, const std::atomic<bool>& cancelled) {
-  const std::lock_guard lock(mutex_);
-  if (!made_ || made_->seed != seed || made_->samples != samples) {
-    made_.reset();  // before the next one takes its memory
-    made_ = Made{seed, samples, integrator.prepare_pass(seed, samples, threads, cancelled)};
-  }
-  return made_->pass;
-}
-
 SceneFuture SceneStore::find(const SceneKey& key) {
   const std::lock_guard lock(mutex_);
   for (auto entry = entries_.begin(); entry != entries_.end(); ++entry) {

@@ -32,29 +32,11 @@ class AuditMemory {
   std::optional<Made> made_;
 };
 
-// Keeps what was prepared last for a pass: all of its tiles ask for it.
-class PassMemory {
- public:
-  // As Integrator::prepare_pass(); one that was cancelled is not kept. Safe to call from many threads; they wait for each other.
-  std::shared_ptr<const PreparedPass> find(const Integrator& integrator, std::uint64_t seed, SampleRange samples, int threads,
-                                           const std::atomic<bool>& cancelled);
-
- private:
-  struct Made {
-    std::uint64_t seed;
-    SampleRange samples;
-    std::shared_ptr<const PreparedPass> pass;
-  };
-  std::mutex mutex_;
-  std::optional<Made> made_;
-};
-
 struct LoadedScene {
   SceneLoadedReply info;
   Scene scene;
   std::unique_ptr<Integrator> integrator;
   std::unique_ptr<AuditMemory> audits = std::make_unique<AuditMemory>();
-  std::unique_ptr<PassMemory> passes = std::make_unique<PassMemory>();
 };
 
 // Reads, compiles and prepares. Throws SceneError, SettingError or ResourceError.

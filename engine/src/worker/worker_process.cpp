@@ -17,6 +17,7 @@
 #include "worker/job_queue.h"
 #include "worker/loaded_scene.h"
 #include "worker/merge.h"
+#include "worker/pass_memory.h"
 #include "worker/tile_file.h"
 #include "worker/tile_runner.h"
 
@@ -26,6 +27,8 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr std::size_t kKeptScenes = 8;
+// Photon maps of one pass may be as large as a scene; tiles of two jobs may take turns.
+constexpr std::size_t kKeptPasses = 2;
 constexpr std::chrono::milliseconds kProgressInterval{250};
 
 FailureReply failure_of(const std::exception_ptr& error) {
@@ -59,7 +62,7 @@ struct Running {
 
 class Worker {
  public:
-  Worker(int fd, int threads) : socket_(fd), threads_(threads), scenes_(kKeptScenes) {}
+  Worker(int fd, int threads) : socket_(fd), threads_(threads), scenes_(kKeptScenes), passes_(kKeptPasses) {}
 
   int run() {
     reply(0, HelloReply{engine_build_id(), threads_});
@@ -185,7 +188,7 @@ class Worker {
       const Clock::time_point start = Clock::now();
       RayQueries queries(loaded.scene.accelerator());
       const std::shared_ptr<const PreparedPass> pass =
-          loaded.passes->find(*loaded.integrator, request.seed, request.samples, threads_, running.cancelled);
+          passes_.find(request.key, *loaded.integrator, request.seed, request.samples, threads_, running.cancelled);
       const TileTask task{request.tiles[tile], request.samples, request.seed, pass.get()};
       const TileSums sums = render_tile(loaded.scene, *loaded.integrator, task, queries, running.cancelled,
                                         [&](std::uint64_t samples) { tell_progress(id, running, samples); });
@@ -236,6 +239,7 @@ class Worker {
   FrameSocket socket_;
   int threads_;
   SceneStore scenes_;
+  PassMemory passes_;
   PassMerger merger_;
   JobQueue jobs_;
   std::mutex running_mutex_;

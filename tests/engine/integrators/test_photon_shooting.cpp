@@ -240,6 +240,16 @@ TEST(PhotonEmission, PhotonsOfOneEmitterAreEquallyStrong) {
   }
 }
 
+TEST(PhotonEmission, MoreThanThereIsMemoryForIsRefused) {
+  const Scene scene(closed_room(0.7f), 1);
+  const PhotonSettings settings{.photons = 1000, .seed = 1};
+  const PhotonTracer tracer(scene, settings);
+  const std::atomic<bool> never{false};
+  const std::size_t stored = shoot(scene, settings).photons.size();
+  EXPECT_EQ(shoot_photons(scene, tracer, {0, 1000}, stored, 2, never).photons.size(), stored);
+  EXPECT_THROW(shoot_photons(scene, tracer, {0, 1000}, stored - 1, 2, never), ResourceError);
+}
+
 // ---------------------------------------------------------------- kinds
 
 TEST(PhotonKinds, FollowWhatTheLightHasMet) {

@@ -19,7 +19,7 @@ std::uint64_t photons_per_sample(const Scene& scene) {
   return std::clamp<std::uint64_t>(pixels / 4, 1 << 12, 1 << 18);
 }
 
-// The photons of one map that are kept at most: 800 MB.
+// The photons of one pass that are kept at most: 800 MB.
 constexpr std::size_t kMostStored = std::size_t{1} << 25;
 
 }  // namespace
@@ -39,12 +39,14 @@ CausticMaps::CausticMaps(const Scene& scene, const ProjectionMap* projection, st
       media_maps_(samples.size()),
       radius_(static_cast<float>(static_cast<double>(scene.method().first_radius) * std::pow(samples.end, (kAlpha - 1) / 2))) {
   PhotonSettings settings = caustic_photon_settings(scene);
+  std::size_t room = kMostStored;
   for (std::uint32_t i = samples.begin; i < samples.end; ++i) {
     settings.seed = hash_words(seed, i);
     const PhotonTracer tracer = projection != nullptr ? PhotonTracer(scene, settings, *projection) : PhotonTracer(scene, settings);
-    const ShotPhotons shot = shoot_photons(scene, tracer, {0, settings.photons}, kMostStored, threads, cancelled);
+    const ShotPhotons shot = shoot_photons(scene, tracer, {0, settings.photons}, room, threads, cancelled);
     maps_[i - begin_] = PhotonMap(shot.photons, threads);
     media_maps_[i - begin_] = PhotonMap(shot.in_media, threads);
+    room -= shot.photons.size() + shot.in_media.size();
     rays_ += shot.rays;
   }
 }

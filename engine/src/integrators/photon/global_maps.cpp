@@ -10,8 +10,8 @@ namespace {
 
 // Shot for each of the two kinds and each sample that the pixels take, where the scene does not say (a choice).
 constexpr std::uint64_t kPhotons = 1 << 14;
-// The photons of one map that are kept at most: 8 x 2 maps take 3 GB then.
-constexpr std::size_t kMostStored = std::size_t{1} << 23;
+// The photons of one pass that are kept at most: 1.6 GB.
+constexpr std::size_t kMostStored = std::size_t{1} << 26;
 
 }  // namespace
 
@@ -25,8 +25,10 @@ PhotonSettings global_photon_settings(const Scene& scene, PhotonKinds kinds) {
 
 GlobalMaps::GlobalMaps(const Scene& scene, const ProjectionMap& projection, std::uint64_t seed, SampleRange samples, int threads,
                        const std::atomic<bool>& cancelled) {
+  std::size_t room = kMostStored;
   const auto shoot = [&](const PhotonSettings& settings, const PhotonTracer& tracer) {
-    const ShotPhotons shot = shoot_photons(scene, tracer, {0, settings.photons}, kMostStored, threads, cancelled);
+    const ShotPhotons shot = shoot_photons(scene, tracer, {0, settings.photons}, room, threads, cancelled);
+    room -= shot.photons.size() + shot.in_media.size();
     rays_ += shot.rays;
     return PhotonMap(shot.photons, threads);
   };

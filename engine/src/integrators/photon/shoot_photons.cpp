@@ -32,7 +32,7 @@ ShotPhotons shoot_photons(const Scene& scene, const PhotonTracer& tracer, Photon
     const std::uint64_t begin = range.begin + index * kPhotonBatch;
     batches[index] = shoot_batch(scene, tracer, {begin, std::min(begin + kPhotonBatch, range.end)});
     if ((stored += batches[index].photons.size() + batches[index].in_media.size()) > max_stored) {
-      throw ResourceError("more than the " + std::to_string(max_stored) + " photons that there is memory for; shoot fewer");
+      throw ResourceError("more than the " + std::to_string(max_stored) + " photons that there is memory left for; shoot fewer");
     }
   });
   ShotPhotons shot;
