@@ -75,7 +75,7 @@ def main() -> None:
         runs += of_luxcore(python, peers.flat_file(scene), options.seconds)
     else:
         print("left out: LuxCore, as LUXCORE_PYTHON names no Python that has it")
-    print(f"caustics are half of the light in {np.mean(where):.0%} of the pixels")
+    print(f"caustics are half of the light in {np.mean(where):.1%} of the pixels")
     print(
         "| method | seconds | relMSE there | over photon-progressive | relMSE of the picture | mean to the reference |"
     )
