@@ -1,7 +1,6 @@
 // Scenes that the tests of the light-side audit share.
 #pragma once
 
-#include <atomic>
 #include <utility>
 
 #include "film/pixel_rect.h"
@@ -9,7 +8,6 @@
 
 namespace fluxfarm::testing {
 
-inline const std::atomic<bool> kNever{false};
 inline constexpr int kSide = 64;
 inline constexpr PixelRect kFrame{0, 0, kSide, kSide};
 

@@ -1,13 +1,15 @@
-// What the tests of photons share: replicates of an estimate, and shooting in one line.
+// What the tests of photons share: replicates of an estimate, shooting and rendering in one line, what a film says of its bias.
 #pragma once
 
-#include <atomic>
+#include <gtest/gtest.h>
+
 #include <cmath>
 #include <cstdint>
 #include <vector>
 
 #include "integrators/photon/shoot_photons.h"
 #include "support/scene_builder.h"
+#include "worker/frame_renderer.h"
 
 namespace fluxfarm::testing {
 
@@ -36,8 +38,62 @@ Measurement replicated(Estimate&& estimate) {
 }
 
 inline ShotPhotons shoot(const Scene& scene, const PhotonSettings& settings, int threads = 2) {
-  static const std::atomic<bool> never{false};
-  return shoot_photons(scene, PhotonTracer(scene, settings), {0, settings.photons}, std::size_t{1} << 26, threads, never);
+  return shoot_photons(scene, PhotonTracer(scene, settings), {0, settings.photons}, std::size_t{1} << 26, threads, kNever);
+}
+
+// Looks at a place, with pixels of so many metres there.
+inline SceneDescription seen(SceneBuilder builder, const std::array<double, 3>& from, const std::array<double, 3>& at, double pixel,
+                             int width, int height) {
+  builder.look(from, at);
+  SceneDescription description = builder.description();
+  description.film.width = width;
+  description.film.height = height;
+  const double distance = std::hypot(from[0] - at[0], from[1] - at[1], from[2] - at[2]);
+  description.camera.fov_degrees = static_cast<float>(2 * std::atan(width * pixel / 2 / distance) * 180 / M_PI);
+  return description;
+}
+
+inline Film render(const Scene& scene, const char* method, std::uint32_t spp, std::uint64_t seed, int threads = 2, int tile = 64) {
+  const PixelRect frame{0, 0, scene.film().width, scene.film().height};
+  const auto integrator = make_integrator(method, scene);
+  return render_frame(scene, *integrator, {frame, tile, threads, seed, {spp, {}, {}}}, kNever).film;
+}
+
+inline void expect_bits_of_neither_threads_nor_tiles(const Scene& scene) {
+  const Film one = render(scene, "photon-progressive", 5, 3, 1, 64), other = render(scene, "photon-progressive", 5, 3, 3, 16);
+  for (int y = 0; y < one.height(); ++y) {
+    for (int x = 0; x < one.width(); ++x) {
+      ASSERT_EQ(one.estimate(x, y).mean, other.estimate(x, y).mean) << x << " " << y;
+      ASSERT_EQ(one.bias_share(x, y), other.bias_share(x, y)) << x << " " << y;
+    }
+  }
+}
+
+// Root of the squared bias that pictures of 32 samples claim over that which they have. First radii are over a pixel's side; with
+// the sharp one and 512 samples next to no bias is left. Squares are relative, and summed over pixels and seeds.
+inline double claimed_over_real_bias(SceneDescription description, float blurred_radius, float sharp_radius, std::uint64_t seeds) {
+  description.method.first_radius = blurred_radius;
+  const Scene scene(description, 1);
+  description.method.first_radius = sharp_radius;
+  const Scene reference(description, 1);
+  double claimed = 0, real = 0, noise = 0;
+  for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
+    const Film blurred = render(scene, "photon-progressive", 32, seed);
+    const Film sharp = render(reference, "photon-progressive", 512, seed + 100);
+    for (int y = 0; y < blurred.height(); ++y) {
+      for (int x = 0; x < blurred.width(); ++x) {
+        const PixelEstimate a = blurred.estimate(x, y), b = sharp.estimate(x, y);
+        const double value = static_cast<double>(b.mean[1]), error = static_cast<double>(a.mean[1]) - value;
+        const double variance =
+            std::pow(static_cast<double>(a.standard_error[1]), 2) + std::pow(static_cast<double>(b.standard_error[1]), 2);
+        claimed += blurred.bias_share(x, y);
+        real += (error * error - variance) / (value * value + 1e-2);
+        noise += variance / (value * value + 1e-2);
+      }
+    }
+  }
+  EXPECT_GT(real, 0.25 * noise);  // otherwise this tests nothing
+  return std::sqrt(claimed / real);
 }
 
 }  // namespace fluxfarm::testing

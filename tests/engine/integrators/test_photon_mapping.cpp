@@ -12,12 +12,11 @@ namespace fluxfarm {
 namespace {
 
 using testing::kMaxZ;
+using testing::kNever;
 using testing::kTwinZ;
 using testing::Measurement;
 using testing::replicated;
 using testing::SceneBuilder;
-
-const std::atomic<bool> kNever{false};
 
 FrameResult render(const Scene& scene, const Goal& goal, std::uint64_t seed, int threads = 2, int tile = 64) {
   const PixelRect frame{0, 0, scene.film().width, scene.film().height};

@@ -7,26 +7,19 @@
 #include "integrators/photon/projection_pilot.h"
 #include "integrators/photon/volume_estimate.h"
 #include "integrators/photon_scenes.h"
-#include "worker/frame_renderer.h"
 
 namespace fluxfarm {
 namespace {
 
 using testing::cube;
 using testing::kMaxZ;
+using testing::kNever;
 using testing::kReplicates;
 using testing::kTwinZ;
 using testing::Measurement;
+using testing::render;
 using testing::SceneBuilder;
 using testing::summarize;
-
-const std::atomic<bool> kNever{false};
-
-Film render(const Scene& scene, const char* method, std::uint32_t spp, std::uint64_t seed, int threads = 2, int tile = 64) {
-  const PixelRect frame{0, 0, scene.film().width, scene.film().height};
-  const auto integrator = make_integrator(method, scene);
-  return render_frame(scene, *integrator, {frame, tile, threads, seed, {spp, {}, {}}}, kNever).film;
-}
 
 using Means = std::array<Measurement, 3>;
 
@@ -41,16 +34,11 @@ Means frame_means(const SceneDescription& description, const char* method, std::
   return {summarize(values[0]), summarize(values[1]), summarize(values[2])};
 }
 
-// Looks at a place, with pixels of so many metres there.
-SceneDescription seen(SceneBuilder builder, const std::array<double, 3>& from, const std::array<double, 3>& at, double pixel,
-                      int width, int height) {
-  builder.look(from, at);
-  SceneDescription description = builder.description();
-  description.film.width = width;
-  description.film.height = height;
-  description.method.first_radius = 4;
-  const double distance = std::hypot(from[0] - at[0], from[1] - at[1], from[2] - at[2]);
-  description.camera.fov_degrees = static_cast<float>(2 * std::atan(width * pixel / 2 / distance) * 180 / M_PI);
+constexpr float kFirstRadius = 4;
+SceneDescription seen_in_fog(const SceneBuilder& builder, const std::array<double, 3>& from, const std::array<double, 3>& at,
+                             double pixel, int width, int height) {
+  SceneDescription description = seen(builder, from, at, pixel, width, height);
+  description.method.first_radius = kFirstRadius;
   return description;
 }
 
@@ -102,7 +90,7 @@ double beam_radiance(double g, double sigma = kSigma, bool phase_function = true
 TEST(PhotonsInMedia, ABeamThroughGlassHasItsClosedForm) {
   for (const float g : {0.0f, -0.4f}) {
     const auto g_exact = static_cast<double>(g);
-    const SceneDescription beam = seen(slab_in_fog(g).max_depth(4), {kEye, kHeight, 0}, {0, kHeight, 0}, 0.015, 4, 16);
+    const SceneDescription beam = seen_in_fog(slab_in_fog(g).max_depth(4), {kEye, kHeight, 0}, {0, kHeight, 0}, 0.015, 4, 16);
     const Measurement m = frame_means(beam, "photon-progressive", 64)[1];
     const double expected = beam_radiance(g_exact);
     EXPECT_LT(m.standard_error, 0.005 * expected);
@@ -116,7 +104,8 @@ TEST(PhotonsInMedia, ABeamThroughGlassHasItsClosedForm) {
 
 TEST(PhotonsInMedia, PathsAreAsLongAsTheyMayBe) {
   const auto green = [](int max_depth) {
-    const SceneDescription beam = seen(slab_in_fog(0).max_depth(max_depth), {kEye, kHeight, 0}, {0, kHeight, 0}, 0.015, 4, 16);
+    const SceneDescription beam =
+        seen_in_fog(slab_in_fog(0).max_depth(max_depth), {kEye, kHeight, 0}, {0, kHeight, 0}, 0.015, 4, 16);
     return frame_means(beam, "photon-progressive", 16)[1];
   };
   const Measurement all = green(-1);
@@ -125,7 +114,7 @@ TEST(PhotonsInMedia, PathsAreAsLongAsTheyMayBe) {
 }
 
 TEST(PhotonsInMedia, ScatteredLightIsInTheVolumeLayer) {
-  const Scene scene(seen(slab_in_fog(0).max_depth(4), {kEye, kHeight, 0}, {0, kHeight, 0}, 0.015, 4, 16), 1);
+  const Scene scene(seen_in_fog(slab_in_fog(0).max_depth(4), {kEye, kHeight, 0}, {0, kHeight, 0}, 0.015, 4, 16), 1);
   const auto integrator = make_integrator("photon-progressive", scene);
   const auto pass = integrator->prepare_pass(1, {0, 16}, 2, kNever);
   RayQueries queries(scene.accelerator());
@@ -144,29 +133,10 @@ TEST(PhotonsInMedia, ScatteredLightIsInTheVolumeLayer) {
 // What the second radius says of the bias is the bias: at the edge of the beam, where it is large.
 TEST(PhotonsInMedia, BiasIsKnown) {
   const double edge = 1.5 * std::tan(M_PI / 18) + 0.5 * std::tan(std::asin(std::sin(M_PI / 18) / kIndex));
-  SceneDescription description = seen(slab_in_fog(0).max_depth(4), {0, kHeight, kEye}, {edge, kHeight, 0}, 0.02, 8, 8);
-  const Scene scene(description, 1);
-  description.method.first_radius = 1;
-  const Scene reference(description, 1);
-  double claimed = 0, real = 0, noise = 0;
-  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
-    const Film blurred = render(scene, "photon-progressive", 32, seed);
-    const Film sharp = render(reference, "photon-progressive", 512, seed + 100);
-    for (int y = 0; y < 8; ++y) {
-      for (int x = 0; x < 8; ++x) {
-        const PixelEstimate a = blurred.estimate(x, y), b = sharp.estimate(x, y);
-        const double value = static_cast<double>(b.mean[1]), error = static_cast<double>(a.mean[1]) - value;
-        const double variance =
-            std::pow(static_cast<double>(a.standard_error[1]), 2) + std::pow(static_cast<double>(b.standard_error[1]), 2);
-        claimed += blurred.bias_share(x, y);
-        real += (error * error - variance) / (value * value + 1e-2);
-        noise += variance / (value * value + 1e-2);
-      }
-    }
-  }
-  EXPECT_GT(real, 0.25 * noise);  // otherwise this tests nothing
-  EXPECT_GT(std::sqrt(claimed / real), 0.7);
-  EXPECT_LT(std::sqrt(claimed / real), 1.7);
+  const SceneDescription description = seen_in_fog(slab_in_fog(0).max_depth(4), {0, kHeight, kEye}, {edge, kHeight, 0}, 0.02, 8, 8);
+  const double ratio = testing::claimed_over_real_bias(description, kFirstRadius, 1, 4);
+  EXPECT_GT(ratio, 0.7);
+  EXPECT_LT(ratio, 1.7);
 }
 
 // ---------------------------------------------------------------- against paths
@@ -220,7 +190,7 @@ double beams_alone(const Scene& scene, const HomogeneousMedium& medium) {
 }
 
 TEST(PhotonsInMedia, TheBeamBehindAGlassBallAgreesWithPaths) {
-  SceneDescription beam = seen(glass_in_fog(kGrey, 0.6f).max_depth(5), {2.5, 0.6, 0}, {0, 0.6, 0}, 0.06, 4, 8);
+  SceneDescription beam = seen_in_fog(glass_in_fog(kGrey, 0.6f).max_depth(5), {2.5, 0.6, 0}, {0, 0.6, 0}, 0.06, 4, 8);
   beam.method.photons = 512;     // few for each sample: most noise is that of the paths
   beam.method.first_radius = 1;  // blur moves light out of the picture, which shows little more than the beam
   const Measurement photons = frame_means(beam, "photon-progressive", 768)[1], paths = frame_means(beam, "path", 3072)[1];
@@ -240,7 +210,7 @@ TEST(PhotonsInMedia, TheBeamBehindAGlassBallAgreesWithPaths) {
 TEST(PhotonsInMedia, WholePicturesAgreeWithPaths) {
   for (const auto& medium : {kColoured, kForwards}) {
     const auto picture = [](const HomogeneousMediumDescription& fog) {
-      return seen(glass_in_fog(fog, 1.5f).max_depth(8), {2.5, 1.0, 0}, {0, 0.65, 0}, 0.15, 12, 12);
+      return seen_in_fog(glass_in_fog(fog, 1.5f).max_depth(8), {2.5, 1.0, 0}, {0, 0.65, 0}, 0.15, 12, 12);
     };
     const Means photons = frame_means(picture(medium), "photon-progressive", 32);
     expect_agreement(photons, frame_means(picture(medium), "path", 256), 0.03);
@@ -253,7 +223,7 @@ TEST(PhotonsInMedia, WholePicturesAgreeWithPaths) {
 
 TEST(PhotonsInMedia, WithoutGlassItIsThePathTracer) {
   for (const auto& medium : {kGrey, kColoured}) {
-    const Scene scene(seen(glass_in_fog(medium, 1, false), {2.5, 1.0, 0}, {0, 0.65, 0}, 0.1, 16, 16), 1);
+    const Scene scene(seen_in_fog(glass_in_fog(medium, 1, false), {2.5, 1.0, 0}, {0, 0.65, 0}, 0.1, 16, 16), 1);
     const FilmSummary both = render(scene, "photon-progressive", 16, 1).summary(), paths = render(scene, "path", 16, 1).summary();
     for (std::size_t channel = 0; channel < 3; ++channel) EXPECT_NEAR(both.mean[channel] / paths.mean[channel], 1, 1e-5);
     EXPECT_EQ(both.error_bias, 0);
@@ -261,14 +231,8 @@ TEST(PhotonsInMedia, WithoutGlassItIsThePathTracer) {
 }
 
 TEST(PhotonsInMedia, BitsDependOnNeitherThreadsNorTiles) {
-  const Scene scene(seen(glass_in_fog(kForwards, 0.5f), {2.5, 0.7, 0}, {0, 0.6, 0}, 0.03, 40, 40), 1);
-  const Film one = render(scene, "photon-progressive", 5, 3, 1, 64), other = render(scene, "photon-progressive", 5, 3, 3, 16);
-  for (int y = 0; y < one.height(); ++y) {
-    for (int x = 0; x < one.width(); ++x) {
-      ASSERT_EQ(one.estimate(x, y).mean, other.estimate(x, y).mean) << x << " " << y;
-      ASSERT_EQ(one.bias_share(x, y), other.bias_share(x, y)) << x << " " << y;
-    }
-  }
+  const Scene scene(seen_in_fog(glass_in_fog(kForwards, 0.5f), {2.5, 0.7, 0}, {0, 0.6, 0}, 0.03, 40, 40), 1);
+  testing::expect_bits_of_neither_threads_nor_tiles(scene);
 }
 
 }  // namespace

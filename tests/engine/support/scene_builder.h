@@ -11,6 +11,8 @@
 
 namespace fluxfarm::testing {
 
+inline const std::atomic<bool> kNever{false};  // cancelled
+
 // Closed mesh of 12 triangles: the image of [-1,1]^3, front side outwards.
 inline MeshDescription cube(const Transform& to_world) {
   MeshDescription mesh;
@@ -124,9 +126,8 @@ struct Measurement {
 inline Measurement measure(const SceneDescription& description, std::uint32_t spp, std::uint64_t seed = 1) {
   const Scene scene(description, 1);
   const auto integrator = make_integrator("path", scene);
-  const std::atomic<bool> never{false};
   const PixelRect frame{0, 0, description.film.width, description.film.height};
-  const FrameResult result = render_frame(scene, *integrator, {frame, 64, 1, seed, {spp, {}, {}}}, never);
+  const FrameResult result = render_frame(scene, *integrator, {frame, 64, 1, seed, {spp, {}, {}}}, kNever);
   std::vector<double> values;
   for (int y = 0; y < frame.height; ++y) {
     for (int x = 0; x < frame.width; ++x) {
