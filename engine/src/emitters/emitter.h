@@ -38,8 +38,8 @@ struct ApparentSize {
   float area = 0;         // of light from inside the scene: the emitter's area times the cosine at its point, m^2
   float solid_angle = 0;  // of light from outside: the inverse of the density of its direction, sr
 
-  // sr, from so many metres away.
-  float from(float distance) const { return solid_angle + area / (distance * distance); }
+  // sr, from so many metres away; light from outside may come from any distance, also 0.
+  float from(float distance) const { return area > 0 ? area / (distance * distance) : solid_angle; }
 };
 
 // A ray on which light leaves an emitter, with the flux that it stands for.

@@ -5,6 +5,7 @@
 
 #include "integrators/photon_scenes.h"
 #include "support/error.h"
+#include "support/sky.h"
 
 namespace fluxfarm {
 namespace {
@@ -110,6 +111,23 @@ TEST_P(RoughMirror, C9_PathsAndPhotonsShareTheLight) {
   }
 }
 INSTANTIATE_TEST_SUITE_P(Roughness, RoughMirror, ::testing::Values(0.0f, 0.05f, 0.1f, 0.15f, 0.2f, 0.4f));
+
+// A ball of glass under a dim sky with a sun some ten degrees wide, which paths find, too: through the ball and by chance.
+TEST(PhotonProgressive, AgreesWithPathsUnderASky) {
+  LatLongImage sky{32, 17, std::vector<Rgb>(32 * 17, Rgb{0.1f})};
+  sky.pixels[32 * 3 + 10] = Rgb{100.0f};
+  SceneBuilder builder;
+  builder.floor(0, 3, builder.diffuse(static_cast<float>(kAlbedo)));
+  builder.shape(SphereDescription{{0, 0.5f, 0}, 0.4f}, builder.add(DielectricDescription{1.5f}));
+  builder.emitter(EnvmapEmitterDescription{sky, Transform()});
+  SceneDescription description = seen(builder, {2.5, 1, 0}, {0, 0.2, 0}, 0.2, 8);
+  const Measurement paths = frame_mean(description, "path", 1024), both = frame_mean(description, "photon-progressive", 64);
+  const double error = std::hypot(both.standard_error, paths.standard_error);
+  EXPECT_LT(error, 0.01 * paths.mean);
+  EXPECT_LT(std::fabs(both.mean - paths.mean) / error, kMaxZ) << both.mean << " for " << paths.mean;
+  description.method.first_radius = 0;  // gathers no photon
+  EXPECT_GT((paths.mean - frame_mean(description, "photon-progressive", 64).mean) / error, kTwinZ);
+}
 
 // From a mirror to a slightly rough one the caustic of a point light changes little; paths alone lose it at once.
 TEST(PhotonProgressive, C9_NothingJumpsWithRoughness) {
