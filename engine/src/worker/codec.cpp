@@ -150,6 +150,7 @@ std::string bytes_of(const std::vector<float>& values) {
 
 std::vector<float> floats_of(const std::string& bytes) {
   std::vector<float> values(bytes.size() / sizeof(float));
+  if (values.empty()) return values;  // its data() is null, which memcpy may not get
   std::memcpy(values.data(), bytes.data(), values.size() * sizeof(float));
   return values;
 }

@@ -154,6 +154,17 @@ TEST(Codec, TileSumsSurviveTheWire) {
   EXPECT_EQ(sums.seed, back.seed);
 }
 
+// Copying no numbers was undefined behaviour, as the sanitizer saw.
+TEST(Codec, TileSumsWithoutLayersAndBiasSurviveTheWire) {
+  const TileSums sums{{0, 0, 2, 2}, {0, 1}, 0, std::vector<float>(12, 0.5f), std::vector<float>(32, 0.25f), 0};
+  const TileSums back = decode_tile_sums(encode_tile_sums(sums), "here");
+  EXPECT_EQ(back.radiance, sums.radiance);
+  EXPECT_EQ(back.layers.size(), 0u);
+  EXPECT_TRUE(back.layer_sums.empty());
+  EXPECT_FALSE(back.biased);
+  EXPECT_TRUE(back.bias_sums.empty());
+}
+
 TEST(Codec, DamagedTileSumsAreAnError) {
   const std::string bytes = encode_tile_sums({{0, 0, 2, 2}, {0, 1}, 0, std::vector<float>(12), std::vector<float>(32), 0});
   EXPECT_NO_THROW(decode_tile_sums(bytes, "here"));
