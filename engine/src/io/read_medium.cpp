@@ -7,6 +7,9 @@
 namespace fluxfarm {
 namespace {
 
+// Of a medium that scatters, m^-1. Thinner, its collisions would lie beyond what rays can reach.
+constexpr float kLeastExtinction = 1e-12f;
+
 float albedo_of(float absorbed, float scattered) { return absorbed + scattered > 0 ? scattered / (absorbed + scattered) : 0.0f; }
 
 // By extinction and albedo as in Mitsuba 3, or by absorption and scattering as files of Mitsuba 0.6 may have it.
@@ -27,6 +30,11 @@ void read_coefficients(Properties& properties, HomogeneousMediumDescription& med
   }
   medium.sigma_t *= properties.number("scale", 1, kNotNegative);
   if (!is_finite(medium.sigma_t)) properties.fail("scale", "with it the extinction becomes infinite");
+  for (const float extinction : {medium.sigma_t.r, medium.sigma_t.g, medium.sigma_t.b}) {
+    if (medium.albedo.is_black() || extinction == 0 || extinction >= kLeastExtinction) continue;
+    properties.fail(absorbs ? given : "sigma_t", "with scale an extinction of " + number_text(extinction) +
+                                                     ", expected 0 or at least " + number_text(kLeastExtinction));
+  }
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 #include "scene/scene.h"
 
 #include <algorithm>
+#include <sstream>
 #include <unordered_set>
 
 #include "materials/make_bsdf.h"
@@ -36,6 +37,28 @@ Bounds bounds_of(const std::vector<Scene::Surface>& surfaces) {
   return bounds;
 }
 
+// Coordinates at most, m. Embree ends the program where a ray starts beyond 1.8e18, and rays from outside start a few times as far
+// away as the scene reaches.
+constexpr float kReach = 1e17f;
+
+void check_reach(const std::string& what, Vec3f place) {
+  const float distance = std::max({std::fabs(place.x), std::fabs(place.y), std::fabs(place.z)});
+  if (distance <= kReach) return;
+  std::ostringstream message;
+  message << "is " << distance << " m from the origin, expected at most " << kReach;
+  throw SceneError(what, message.str());
+}
+
+void check_reach(const CameraDescription& camera, Vec3f position) {
+  const float lens = camera.near_clip + camera.aperture_radius;  // rays start so far from there
+  check_reach("the sensor", {std::fabs(position.x) + lens, std::fabs(position.y) + lens, std::fabs(position.z) + lens});
+}
+
+void check_reach(const EmitterDescription& emitter) {
+  if (const auto* point = std::get_if<PointEmitterDescription>(&emitter)) check_reach("a point emitter", point->position);
+  if (const auto* spot = std::get_if<SpotEmitterDescription>(&emitter)) check_reach("a spot emitter", spot->position);
+}
+
 }  // namespace
 
 Scene::Scene(const SceneDescription& description, int threads)
@@ -54,11 +77,14 @@ Scene::Scene(const SceneDescription& description, int threads)
   census_.textures = textures_.size();
   census_.media = media_.size();
   census_.coloured_media = std::any_of(media_.begin(), media_.end(), [](const HomogeneousMedium& m) { return m.coloured(); });
+  check_reach(description.camera, camera_.position());
   surfaces_.reserve(description.shapes.size());
   std::unordered_set<const TriangleMesh*> counted;  // of those that instances share
   for (const ShapeDescription& shape : description.shapes) {
     Surface surface;
     surface.shape = add_shape(shape, shape.emitted_radiance.has_value(), shared_meshes_, *accelerator_);
+    const Bounds bounds = surface.shape->bounds();
+    for (const Vec3f corner : {bounds.lower, bounds.upper}) check_reach(shape.name, corner);
     const Bsdf* bsdf = bsdfs_[static_cast<std::size_t>(shape.material)].get();
     const Bsdf::Sides sides = bsdf->sides();
     surface.front = sides.front != nullptr ? sides.front : bsdf;
@@ -121,6 +147,7 @@ Scene::Scene(const SceneDescription& description, int threads)
   if (!bounds.empty()) center_ = bounds.center();
   radius_ = bounds.radius();
   for (const EmitterDescription& emitter : description.emitters) {
+    check_reach(emitter);
     if (auto made = make_emitter(emitter, radius_)) free_emitters_.push_back(std::move(made));
     if (const auto* constant = std::get_if<ConstantEmitterDescription>(&emitter)) {
       environment_ = environment_.value_or(Rgb{}) + constant->radiance;

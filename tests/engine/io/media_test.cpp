@@ -81,6 +81,11 @@ TEST(BadMedia, CoefficientsAreChecked) {
   EXPECT_EQ(error("<float name=\"scale\" value=\"-2\"/>"), where + "scale = -2, expected a number of at least 0");
   EXPECT_EQ(error("<float name=\"sigma_t\" value=\"1e30\"/><float name=\"scale\" value=\"1e30\"/>"),
             where + "scale = 1e+30, with it the extinction becomes infinite");
+  EXPECT_EQ(error("<rgb name=\"sigma_t\" value=\"0 1 1e-20\"/>"),
+            where + "sigma_t = 0, 1, 1e-20, with scale an extinction of 1e-20, expected 0 or at least 1e-12");
+  EXPECT_EQ(folder.read_xml(filled("<float name=\"sigma_t\" value=\"1e-20\"/><float name=\"albedo\" value=\"0\"/>")).media.size(),
+            1u)
+      << "nothing scatters there";
   EXPECT_EQ(error("<float name=\"sigma_a\" value=\"1\"/>"), where + "sigma_a = 1, but sigma_a and sigma_s must be given together");
   EXPECT_EQ(error("<float name=\"sigma_a\" value=\"1\"/><float name=\"sigma_s\" value=\"1\"/><float name=\"albedo\" value=\"1\"/>"),
             where + "sigma_a = 1, but sigma_t or albedo are given, too; expected sigma_t and albedo, or sigma_a and sigma_s");

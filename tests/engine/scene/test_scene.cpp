@@ -267,5 +267,28 @@ TEST(AreaEmitter, ShinesOnBothSidesOnlyIfToldSo) {
   EXPECT_FLOAT_EQ(both.power().r, 2 * one.power().r);
 }
 
+// Embree would end the program.
+TEST(BadScene, LiesFartherAwayThanRaysReach) {
+  const auto refused = [](SceneBuilder builder, const std::array<double, 3>& eye = {0, 0, 1}) -> std::string {
+    try {
+      const Scene scene(builder.look(eye, {0, 0, 0}).description(), 1);
+    } catch (const SceneError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  const auto ball = [](float x) {
+    SceneBuilder builder;
+    return builder.shape(SphereDescription{{x, 0, 0}, 1}, builder.diffuse(1));
+  };
+  const std::string expected = " is 1e+18 m from the origin, expected at most 1e+17";
+  EXPECT_EQ(refused(ball(1e16f)), "");
+  EXPECT_EQ(refused(ball(-1e18f)), "test shape:" + expected);
+  EXPECT_EQ(refused(ball(0), {0, 0, 1e18}), "the sensor:" + expected);
+  EXPECT_EQ(refused(ball(0).near_clip(1e18f)), "the sensor:" + expected);
+  EXPECT_EQ(refused(ball(0).emitter(PointEmitterDescription{{0, 1e18f, 0}})), "a point emitter:" + expected);
+  EXPECT_EQ(refused(ball(0).emitter(SpotEmitterDescription{{0, 0, -1e18f}})), "a spot emitter:" + expected);
+}
+
 }  // namespace
 }  // namespace fluxfarm::testing
