@@ -1,7 +1,9 @@
-// Caustics with closed forms: catalogue C1, C2, C3, C7.
+// Caustics with closed forms: catalogue C1 to C7.
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <utility>
+#include <vector>
 
 #include "integrators/photon/density_estimate.h"
 #include "integrators/photon/density_kernel.h"
@@ -92,6 +94,188 @@ TEST(PhotonCaustics, C3_SlabOfGlassOffTheAxis) {
   EXPECT_LT(m.z(expected), kMaxZ) << m.mean << " for " << expected;
   EXPECT_LT(m.standard_error, 0.02 * expected);
   EXPECT_GT(m.z(expected * 1.25), kTwinZ);
+}
+
+// Flux of the caustic photons, which come by so many surfaces at most, within `radius` (m) of each of the places, W.
+std::vector<Measurement> fluxes_within(const SceneDescription& description, const std::vector<Vec3f>& places, float radius,
+                                       int max_bounces, std::uint64_t photons) {
+  const Scene scene(description, 1);
+  std::vector<std::vector<double>> fluxes(places.size());
+  for (std::uint64_t seed = 1; seed <= testing::kReplicates; ++seed) {
+    const PhotonSettings settings{.photons = photons, .seed = seed, .max_bounces = max_bounces, .kinds = PhotonKind::kCaustic};
+    for (std::vector<double>& flux : fluxes) flux.push_back(0);
+    for (const Photon& photon : shoot(scene, settings).photons) {
+      for (std::size_t i = 0; i < places.size(); ++i) {
+        if (length(photon.position - places[i]) < radius) fluxes[i].back() += static_cast<double>(photon.light.flux().g);
+      }
+    }
+  }
+  std::vector<Measurement> result;
+  for (const std::vector<double>& flux : fluxes) result.push_back(testing::summarize(flux));
+  return result;
+}
+
+DirectionalEmitterDescription sun(Vec3f direction) { return {normalize(direction), Rgb{1}}; }
+
+// ---------------------------------------------------------------- C4
+
+// A ball of glass of diameter one. A ray at height b is turned twice by i - t and leaves as far from the middle as it came.
+struct BallLens {
+  double index = 1.5, radius = 0.5;
+
+  double focal_length() const { return index * 2 * radius / (4 * (index - 1)); }  // from the middle
+  // How far from the axis it meets the plane of the focus.
+  double aberration(double b) const {
+    const double turned = 2 * (std::asin(b / radius) - std::asin(b / radius / index));
+    return std::fabs(focal_length() * std::tan(turned) - b / std::cos(turned));
+  }
+  double transmittance(double b) const {
+    const double i = std::asin(b / radius), t = std::asin(b / radius / index);
+    const double s = std::sin(i - t) / std::sin(i + t), p = std::tan(i - t) / std::tan(i + t);
+    return std::pow(1 - s * s, 2) / 2 + std::pow(1 - p * p, 2) / 2;  // unpolarised light is polarised by the first face
+  }
+};
+
+TEST(PhotonCaustics, C4_BallLensAndItsSphericalAberration) {
+  const BallLens lens;
+  EXPECT_DOUBLE_EQ(lens.focal_length(), 0.75);
+  const auto behind = [](float index) {
+    SceneBuilder builder;
+    builder.floor(0, 0.5f, builder.diffuse(0));
+    builder.shape(SphereDescription{{0, 0.75f, 0}, 0.5f}, builder.add(DielectricDescription{index}));
+    builder.emitter(sun({0, -1, 0}));
+    return builder.description();
+  };
+  for (const double beam : {0.1, 0.15}) {
+    // A thin beam is within the aberration of third order, 10/9 b^3 / D^2 for this glass, of the focus: at b = D/10 in 1/90 of b.
+    const double spot = lens.aberration(beam);
+    EXPECT_NEAR(spot / (10.0 / 9 * std::pow(beam, 3)), 1, 3 * beam * beam / 0.25);
+    double expected = 0;  // of all rays up to there: those farther out meet the plane farther out
+    constexpr int kRings = 1000;
+    for (int i = 0; i < kRings; ++i) {
+      const double b = beam * (i + 0.5) / kRings;
+      expected += 2 * M_PI * b * beam / kRings * lens.transmittance(b);
+    }
+    const auto through = [&](float index) {
+      return fluxes_within(behind(index), {{0, 0, 0}}, static_cast<float>(spot), 3, 200000)[0];
+    };
+    const Measurement m = through(1.5f);
+    EXPECT_LT(m.z(expected), kMaxZ) << beam << ": " << m.mean << " for " << expected;
+    EXPECT_LT(m.standard_error, 0.02 * expected) << beam;
+    EXPECT_GT(through(1.6f).z(expected), kTwinZ) << beam << ": the focus is elsewhere";
+  }
+}
+
+// ---------------------------------------------------------------- C5
+
+constexpr double kFacet = 0.02;  // side seen along the axis, of a mirror of radius one
+
+// Concave mirror y = height(rho^2) of flat facets, seen from above, of which it takes an area (m^2).
+struct Facets {
+  MeshDescription mesh;
+  double area = 0;
+};
+template <typename Height>
+Facets facets(Height&& height) {
+  Facets result;
+  const int half = static_cast<int>(1 / kFacet);
+  for (int i = -half; i < half; ++i) {
+    for (int j = -half; j < half; ++j) {
+      const double x = (i + 0.5) * kFacet, z = (j + 0.5) * kFacet;
+      if (std::hypot(x, z) > 0.98) continue;
+      const auto first = static_cast<std::uint32_t>(result.mesh.positions.size());
+      for (const auto& [dx, dz] : {std::pair{-0.5, -0.5}, {-0.5, 0.5}, {0.5, 0.5}, {0.5, -0.5}}) {
+        const double px = x + dx * kFacet, pz = z + dz * kFacet;
+        result.mesh.positions.push_back(
+            {static_cast<float>(px), static_cast<float>(height(px * px + pz * pz)), static_cast<float>(pz)});
+      }
+      for (const std::uint32_t corner : {0u, 1u, 2u, 0u, 2u, 3u}) result.mesh.indices.push_back(first + corner);
+      result.area += kFacet * kFacet;
+    }
+  }
+  return result;
+}
+
+TEST(PhotonCaustics, C5_ParabolicMirrorGathersAllLightAtItsFocus) {
+  // A facet of a parabola has the slope that the parabola has at its middle: all it reflects goes the same way, as broad as it is,
+  // and the disk at the focus sees that at angles up to 53 degrees.
+  const double least = kFacet / std::sqrt(2.0) / std::cos(2 * std::atan(0.5)), radius = 1.1 * least;
+  const auto gathered = [&](const Facets& mirror, double r) {
+    SceneBuilder builder;
+    builder.shape(mirror.mesh, builder.add(ConductorDescription{.perfect = true}));
+    builder.shape(DiskDescription{Transform::translate(0, 1, 0) * Transform::rotate(1, 0, 0, 90) * Transform::scale(r, r, 1)},
+                  builder.diffuse(0));
+    builder.emitter(sun({0, -1, 0}));
+    return fluxes_within(builder.description(), {{0, 1, 0}}, 0.1f, 2, 50000)[0];
+  };
+  const Facets parabola = facets([](double squared) { return squared / 4; });
+  const double expected = parabola.area - M_PI * radius * radius;  // the disk stands in its own light
+  const Measurement m = gathered(parabola, radius);
+  EXPECT_LT(m.z(expected), kMaxZ) << m.mean << " for " << expected;
+  EXPECT_LT(m.standard_error, 0.005 * expected);
+  EXPECT_GT(gathered(parabola, 0.5 * least).z(parabola.area - M_PI * 0.25 * least * least), kTwinZ)
+      << "the disk has that room only";
+  // Twin: a sphere of the same focal length.
+  EXPECT_GT(gathered(facets([](double squared) { return 2 - std::sqrt(4 - squared); }), radius).z(expected), kTwinZ);
+}
+
+// ---------------------------------------------------------------- C6
+
+// Half a cup of radius one and height two with a mirror inside, its middle at the origin. The sun shines in at 45 degrees along x.
+SceneDescription cup() {
+  constexpr int kStrips = 1000;
+  constexpr double kReach = 50 * M_PI / 180;  // to both sides
+  MeshDescription wall;
+  for (int i = 0; i <= kStrips; ++i) {
+    const double angle = kReach * (2.0 * i / kStrips - 1);
+    const auto x = static_cast<float>(std::cos(angle)), z = static_cast<float>(std::sin(angle));
+    wall.positions.push_back({x, 0, z});
+    wall.positions.push_back({x, 2, z});
+  }
+  for (std::uint32_t i = 0; i < 2 * kStrips; i += 2) {
+    for (const std::uint32_t corner : {0u, 2u, 3u, 0u, 3u, 1u}) wall.indices.push_back(i + corner);
+  }
+  SceneBuilder builder;
+  builder.floor(0, 1, builder.diffuse(0));
+  builder.shape(wall, builder.add(ConductorDescription{.perfect = true}));
+  builder.emitter(sun({1, -1, 0}));
+  return builder.description();
+}
+
+// Light that a ray at distance b from the axis brings falls evenly on its way back over the floor: of the disk there it takes
+// the length within it.
+double nephroid_flux(double x, double radius) {
+  double flux = 0;
+  constexpr int kRays = 20000;
+  const double reach = std::sin(50 * M_PI / 180);
+  for (int i = 0; i < kRays; ++i) {
+    const double b = reach * (2 * (i + 0.5) / kRays - 1), angle = std::asin(b);
+    const double dx = -std::cos(2 * angle), dz = -std::sin(2 * angle);  // of the reflected ray from (cos angle, b)
+    const double across = (x - std::cos(angle)) * dz + b * dx;
+    if (std::fabs(across) < radius) flux += 2 * std::sqrt(radius * radius - across * across);
+  }
+  return flux * 2 * reach / kRays * std::sqrt(0.5);
+}
+
+TEST(PhotonCaustics, C6_NephroidHasItsCuspHalfWayToTheMirror) {
+  // On the axis, closed form: the ray along it is focused at 1/2, and from there on two more cross.
+  const auto on_axis = [](double x) { return 1 / std::fabs(2 * x - 1) + (x > 0.5 ? 2 / (4 * x * x - 1) : 0); };
+  for (const double x : {0.3, 0.7}) {
+    EXPECT_NEAR(nephroid_flux(x, 0.01) / (M_PI * 1e-4 * std::sqrt(0.5) * on_axis(x)), 1, 0.01) << x;
+  }
+  constexpr double kRadius = 0.03;
+  const std::vector<double> distances{0.3, 0.45, 0.5, 0.55, 0.7};
+  std::vector<Vec3f> places;
+  for (const double x : distances) places.push_back({static_cast<float>(x), 0, 0});
+  const std::vector<Measurement> m = fluxes_within(cup(), places, kRadius, 2, 200000);
+  for (std::size_t i = 0; i < m.size(); ++i) {
+    const double x = distances[i], expected = nephroid_flux(x, kRadius);
+    EXPECT_LT(m[i].z(expected), kMaxZ) << x << ": " << m[i].mean << " for " << expected;
+    EXPECT_LT(m[i].standard_error, 0.05 * expected) << x;
+    if (x < 0.4 || x > 0.6) continue;
+    // Twin: a cusp somewhere else.
+    for (const double moved : {-0.05, 0.05}) EXPECT_GT(m[i].z(nephroid_flux(x + moved, kRadius)), kTwinZ) << x << moved;
+  }
 }
 
 TEST(PhotonCaustics, C7_GlassNeitherMakesNorLosesFlux) {
