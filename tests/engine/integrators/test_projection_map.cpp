@@ -1,5 +1,5 @@
 // Projection maps: no light that makes a caustic is masked, none is lost or gained, and the photons go where they are of use.
-// Catalogue P1, P9.
+// Catalogue P1, P9, 4.4 (few photons).
 #include <gtest/gtest.h>
 
 #include <functional>
@@ -289,6 +289,65 @@ TEST(ProjectionMap, NoPhotonIsMuchStrongerThanByPowerAlone) {
     sum += measured.probability(i);
   }
   EXPECT_NEAR(sum, 1, 1e-9);
+}
+
+// ---------------------------------------------------------------- few photons: catalogue 4.4
+
+// A lamp before a black wall with a window of 0.4 by 0.4; behind it a white wall, whose light falls on a floor.
+SceneDescription keyhole() {
+  SceneBuilder b;
+  const int black = b.diffuse(0);
+  for (const double turn : {0, 90, 180, 270}) {
+    b.shape(
+        RectangleDescription{Transform::rotate(0, 0, 1, turn) * Transform::translate(-0.6, 0.8, 0) * Transform::scale(0.8, 0.6, 1)},
+        black);
+  }
+  b.shape(RectangleDescription{Transform::translate(0, 0, -1)}, b.diffuse(0.8f));
+  b.floor(-1, 1, black);
+  return b.emitter(PointEmitterDescription{{0, 0, 1}, Rgb{1}}).description();
+}
+
+struct FewPhotons {
+  double photons = 0, flux = 0, deviation = 0;  // means over seeds, and the standard deviation over the mean of the flux
+};
+
+// Of a disk on the floor.
+FewPhotons few_photons(const Scene& scene, const ProjectionMap* map, int seeds) {
+  FewPhotons few;
+  double squares = 0;
+  for (int seed = 1; seed <= seeds; ++seed) {
+    const PhotonSettings settings{
+        .photons = 20000, .seed = static_cast<std::uint64_t>(seed), .max_bounces = 2, .kinds = PhotonKind::kIndirect};
+    double flux = 0;
+    for (const Photon& photon : shoot(scene, settings, map).photons) {
+      if (length(photon.position - Vec3f{0, -1, -0.5f}) > 0.45f) continue;
+      flux += static_cast<double>(photon.light.flux().g);
+      few.photons += 1.0 / seeds;
+    }
+    few.flux += flux / seeds;
+    squares += flux * flux / seeds;
+  }
+  few.deviation = std::sqrt((squares / (few.flux * few.flux) - 1) * seeds / (seeds - 1));
+  return few;
+}
+
+TEST(ProjectionMap, Fails44_FewPhotonsComeThroughAKeyhole) {
+  constexpr int kSeeds = 200;
+  const double error = 1 / std::sqrt(2.0 * (kSeeds - 1));  // of a standard deviation, relative
+  const Scene scene(keyhole(), 1);
+  const FewPhotons few = few_photons(scene, nullptr, kSeeds);
+  EXPECT_LT(few.photons, 30);
+  EXPECT_NEAR(few.deviation * std::sqrt(few.photons), 1, kMaxZ * error) << few.photons;
+  EXPECT_GT(few.deviation * std::sqrt(2 * few.photons), 1 + kTwinZ * error);  // as if there were twice as many
+  // Photons for the window alone.
+  const ProjectionMap window(scene, {Ball{{0, 0, 0}, 0.3f}});
+  const FewPhotons many = few_photons(scene, &window, kSeeds);
+  EXPECT_GT(many.photons, 10 * few.photons);
+  EXPECT_LT(many.deviation, (1 + kMaxZ * error) / std::sqrt(many.photons));
+  const double noise = few.deviation * few.flux / std::sqrt(kSeeds);
+  EXPECT_LT(std::fabs(many.flux - few.flux), kMaxZ * noise) << many.flux << " for " << few.flux;
+  std::printf("keyhole: %.1f photons, standard deviation %.3f; through its projection map %.1f, %.3f\n", few.photons, few.deviation,
+              many.photons, many.deviation);
 }
 
 // ---------------------------------------------------------------- bounds of surfaces, and what makes no sense
