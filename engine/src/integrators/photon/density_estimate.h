@@ -6,7 +6,7 @@
 // evenly lit surfaces it is right in the mean, for fixed radii and for the nearest photons: the photon that sets the radius lies on
 // its rim and is not counted, which is the rule of k - 1, and where max_radius comes first it is a fixed radius. (Each photon that
 // is counted sees a radius that the others set, over whose disk its weight has mean one.) The disk reaches over edges of surfaces:
-// there the estimate is too small by the part outside.
+// there the estimate is too small by the part outside, which disk_in_sight.h tells.
 #pragma once
 
 #include <cmath>
@@ -39,10 +39,10 @@ DensityEstimate estimate_within(const PhotonMap& map, const SurfacePatch& patch,
   return estimate;
 }
 
-// Calls visit(light, t), t = squared distance over squared radius of the disk, for each photon that counts among those for which
-// accept(d, light), d leading there from `position`: the nearest `count` (at least 2), of which the farthest sets the radius and is
-// not visited, or all within `max_radius` (m) if those are fewer. Returns the squared radius, m^2; 0 if there is no disk. `nearest`
-// is workspace: keep it from one call to the next.
+// Calls visit(photon, t), t = squared distance over squared radius of the disk, for each photon of the map that counts among those
+// for which accept(d, light), d leading there from `position`: the nearest `count` (at least 2), of which the farthest sets the
+// radius and is not visited, or all within `max_radius` (m) if those are fewer. Returns the squared radius, m^2; 0 if there is no
+// disk. `nearest` is workspace: keep it from one call to the next.
 template <typename Accept, typename Visit>
 float for_each_nearest(const PhotonMap& map, Vec3f position, std::size_t count, float max_radius, const Accept& accept,
                        NearestPhotons& nearest, const Visit& visit) {
@@ -57,7 +57,7 @@ float for_each_nearest(const PhotonMap& map, Vec3f position, std::size_t count, 
   }
   if (!(radius_squared > 0)) return 0;
   for (std::size_t i = 0; i < nearest.size(); ++i) {
-    visit(map.light(nearest.photons()[i]), nearest.distances_squared()[i] / radius_squared);
+    visit(nearest.photons()[i], nearest.distances_squared()[i] / radius_squared);
   }
   return radius_squared;
 }
@@ -69,8 +69,8 @@ DensityEstimate estimate_by_nearest(const PhotonMap& map, const SurfacePatch& pa
   DensityEstimate estimate;
   const float radius_squared = for_each_nearest(
       map, patch.position(), count, max_radius, [&](Vec3f d, const PhotonLight& light) { return patch.accepts(d, light); }, nearest,
-      [&](const PhotonLight& light, float t) {
-        estimate.value += light.flux() * kernel.weight(t);
+      [&](std::uint32_t photon, float t) {
+        estimate.value += map.light(photon).flux() * kernel.weight(t);
         ++estimate.photons;
       });
   if (!(radius_squared > 0)) return {};

@@ -2,7 +2,8 @@
 //
 // weight(t), t = (distance / radius)^2 in [0,1], has mean one over the disk, so that the sum of weight x flux over the area of the
 // disk is right where the light is even, whatever the kernel. Where it is not, the estimate is off by kBias radius^2 times the
-// Laplacian of the irradiance; its variance is kVariance times that of the box.
+// Laplacian of the irradiance; its variance is kVariance times that of the box. sample(u), where there is one, is the t of a point
+// of the disk with density weight(t) / area, for u even in [0,1).
 #pragma once
 
 #include <cmath>
@@ -17,6 +18,7 @@ inline constexpr float kBiasPerDifference = 1 / (1 - 0.70710678f);
 struct BoxKernel {
   static constexpr double kBias = 1.0 / 8, kVariance = 1;
   float weight(float) const { return 1; }
+  float sample(float u) const { return u; }
 };
 
 // Of all kernels the one with the least mean squared error at its best radius.                              [Epanechnikov69]
@@ -25,6 +27,7 @@ struct BoxKernel {
 struct EpanechnikovKernel {
   static constexpr double kBias = 1.0 / 12, kVariance = 4.0 / 3;
   float weight(float t) const { return 2 * (1 - t); }
+  float sample(float u) const { return 1 - std::sqrt(1 - u); }
 };
 
 // Smooth at its rim, too.                                                                          [Silverman86]

@@ -7,13 +7,18 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 
+#include "accel/ray_queries.h"
 #include "integrators/integrator.h"
 #include "integrators/key_random.h"
 #include "integrators/light_history.h"
 #include "integrators/path/path_vertex.h"
+#include "integrators/photon/density_kernel.h"
+#include "integrators/photon/disk_in_sight.h"
 #include "integrators/photon/global_maps.h"
 #include "integrators/photon/nearest_photons.h"
+#include "integrators/photon/one_of_photons.h"
 #include "integrators/photon/scattered_photons.h"
 #include "integrators/photon/sharpness.h"
 #include "integrators/photon/surface_patch.h"
@@ -23,8 +28,13 @@ namespace fluxfarm {
 
 class GlobalPhotons {
  public:
-  GlobalPhotons(const Scene& scene, const GlobalMaps& maps, std::uint64_t seed)
-      : scene_(scene), maps_(maps), seed_(seed), max_radius_(kMaxRadius * scene.radius()), gathers_(scene.method().final_gather) {}
+  GlobalPhotons(const Scene& scene, const GlobalMaps& maps, std::uint64_t seed, RayQueries& queries)
+      : scene_(scene),
+        maps_(maps),
+        seed_(seed),
+        max_radius_(kMaxRadius * scene.radius()),
+        gathers_(scene.method().final_gather),
+        queries_(queries) {}
 
   struct State {
     std::uint32_t sample = 0;
@@ -48,11 +58,11 @@ class GlobalPhotons {
     state.from_gathering = state.blurred > 0;
     if (!(state.random.next_1d() < sharpness(1 / state.value))) ++state.blurred;
   }
-  void gather(const State& state, const PathVertex& vertex, int room, const Rgb& throughput, const LightHistory& history,
+  void gather(State& state, const PathVertex& vertex, int room, const Rgb& throughput, const LightHistory& history,
               SampleResult& result) {
-    estimate(maps_.caustics(state.sample), vertex, room, throughput, history, result);
+    estimate(maps_.caustics(state.sample), vertex, room, throughput, history, state.random, result);
     if (gathers_ && state.blurred == 0) return;
-    estimate(maps_.indirect(state.sample), vertex, room, throughput, history, result);
+    estimate(maps_.indirect(state.sample), vertex, room, throughput, history, state.random, result);
   }
 
   // Light that comes to a surface of a gather ray and goes on sharply was a caustic where that ray began.
@@ -77,20 +87,30 @@ class GlobalPhotons {
   }
 
   void estimate(const PhotonMap& map, const PathVertex& vertex, int room, const Rgb& throughput, const LightHistory& history,
-                SampleResult& result);
+                KeyRandom& random, SampleResult& result);
 
   const Scene& scene_;
   const GlobalMaps& maps_;
   std::uint64_t seed_;
   float max_radius_;  // m
   bool gathers_;
+  RayQueries& queries_;
   NearestPhotons nearest_;
 };
 
 inline void GlobalPhotons::estimate(const PhotonMap& map, const PathVertex& vertex, int room, const Rgb& throughput,
-                                    const LightHistory& history, SampleResult& result) {
+                                    const LightHistory& history, KeyRandom& random, SampleResult& result) {
   ScatteredPhotons scattered(vertex);
-  const float radius_squared = scattered.add_nearest(map, SurfacePatch(vertex, max_radius_), kNearest, max_radius_, room, nearest_);
+  const SurfacePatch patch(vertex, max_radius_);
+  OneOfPhotons one(random.next_1d());
+  const float radius_squared =
+      scattered.add_nearest(map, patch, kNearest, max_radius_, room, nearest_,
+                            [&](std::uint32_t photon, const ScatteredPhotons::Part& part) { one.offer(photon, part); });
+  if (one.empty()) return;
+  const DiskInSight disk(scene_, patch, std::sqrt(radius_squared), queries_);
+  const auto [wide, narrow] = disk.inverse_parts(EpanechnikovKernel{}, random);
+  if (!disk.sees(map.position(one.photon()), normalize(map.light(one.photon()).normal()))) scattered.remove(one.stands_for());
+  scattered.scale(wide, narrow);
   scattered.add_to(result, throughput, radius_squared, history);
 }
 

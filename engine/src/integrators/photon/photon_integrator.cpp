@@ -26,7 +26,7 @@ std::shared_ptr<const PreparedPass> PhotonIntegrator::prepare_pass(std::uint64_t
 void PhotonIntegrator::radiance(std::span<const CameraSample> samples, std::uint64_t seed, const PreparedPass* pass,
                                 std::span<SampleResult> results, RayQueries& queries) const {
   const auto& maps = *static_cast<const GlobalMaps*>(pass);
-  PathGroup<GlobalPhotons> group(*scene_, {*scene_, maps, seed}, queries);
+  PathGroup<GlobalPhotons> group(*scene_, {*scene_, maps, seed, queries}, queries);
   for_each_group(samples, results,
                  [&](std::span<const CameraSample> block, std::span<SampleResult> out) { group.trace(block, seed, out); });
 }

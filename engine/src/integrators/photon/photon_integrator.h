@@ -4,8 +4,9 @@
 // Parameters (MethodDescription): photons, of each of the two kinds of maps for each sample of the pixels; final_gather, whether
 // indirect light is gathered by a ray or read where the path is; max_depth, rr_depth and hide_emitters as of the path tracer.
 //
-// Good for: a quick look at all light, caustics and light from enclosed sources with them. Poor for: contact shadows and corners in
-// a direct look; walls thinner than the disks of photons. error.bias tells how much. Participating media are not modelled.
+// Good for: a quick look at all light, caustics and light from enclosed sources with them. Poor for: contact shadows, and other
+// light that changes within a disk of photons, in a direct look; error.bias tells how much. Edges, corners and thin walls are known
+// to the disks (disk_in_sight.h). Participating media are not modelled.
 //
 // Each replicate and each pass has photons of its own: error.noise holds their noise, and it falls as samples are added.
 //

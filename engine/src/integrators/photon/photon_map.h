@@ -53,6 +53,7 @@ class PhotonMap {
   void find_nearest(Vec3f center, Accept&& accept, NearestPhotons& nearest) const;
 
   const PhotonLight& light(std::uint32_t photon) const { return lights_[photon]; }
+  Vec3f position(std::uint32_t photon) const { return offset(photon / kBlock, photon % kBlock, {}); }  // world, m
 
  private:
   static constexpr std::size_t kBlock = 16;

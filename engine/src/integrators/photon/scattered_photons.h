@@ -20,28 +20,53 @@ class ScatteredPhotons {
  public:
   explicit ScatteredPhotons(const PathVertex& vertex) : vertex_(vertex) {}
 
-  // `t`: squared distance over squared radius of the disk. What the surface would scatter sharply it leaves out: that light is for
+  // What one photon brings, W sr^-1: weight times flux times f in the disk, and in that of half the area.
+  struct Part {
+    Rgb wide, narrow;
+    bool smooth = false;  // only mirrors and smooth refractions scattered the light before
+  };
+
+  // `t`: squared distance over squared radius of the disk. What the surface would scatter sharply is left out: that light is for
   // the next surface on the path's way to the eye.
-  void add(const PhotonLight& light, float t) {
+  Part part(const PhotonLight& light, float t) const {
     const Vec3f world = normalize(light.wi()), wi = vertex_.frame.to_local(world);
     const float arriving = std::fabs(dot(world, vertex_.point.geometric_normal));
-    if (!(arriving > 0)) return;
+    if (!(arriving > 0)) return {};
     const Rgb f = vertex_.bsdf->value(vertex_.wo, wi).f;
-    const float part = (1 - sharpness(1 / max_component(f))) * std::fabs(wi.z) / arriving;
-    const Rgb scattered = light.flux() * f * part;
+    const float share = (1 - sharpness(1 / max_component(f))) * std::fabs(wi.z) / arriving;
+    const Rgb scattered = light.flux() * f * share;
     constexpr EpanechnikovKernel kKernel;
-    (light.kind() == PhotonKind::kCaustic ? smooth_ : rough_) += scattered * kKernel.weight(t);
-    if (t < 0.5f) narrower_ += scattered * (2 * kKernel.weight(2 * t));
+    return {scattered * kKernel.weight(t), t < 0.5f ? scattered * (2 * kKernel.weight(2 * t)) : Rgb{},
+            light.kind() == PhotonKind::kCaustic};
+  }
+  void add(const Part& part) {
+    (part.smooth ? smooth_ : rough_) += part.wide;
+    narrower_ += part.narrow;
+  }
+  void remove(const Part& part) { add({part.wide * -1, part.narrow * -1, part.smooth}); }
+  void scale(float wide, float narrow) {
+    smooth_ *= wide;
+    rough_ *= wide;
+    narrower_ *= narrow;
   }
 
   // Adds the nearest `count` photons or all within `max_radius` (m), as for_each_nearest(), of those that `patch` accepts and that
-  // met fewer than `room` surfaces. Returns the squared radius, m^2.
+  // met fewer than `room` surfaces, and calls note(photon, part) for each. Returns the squared radius, m^2.
+  template <typename Note>
   float add_nearest(const PhotonMap& map, const SurfacePatch& patch, std::size_t count, float max_radius, int room,
-                    NearestPhotons& nearest) {
+                    NearestPhotons& nearest, const Note& note) {
     return for_each_nearest(
         map, patch.position(), count, max_radius,
         [&](Vec3f d, const PhotonLight& light) { return light.surfaces() < room && patch.accepts(d, light); }, nearest,
-        [&](const PhotonLight& light, float t) { add(light, t); });
+        [&](std::uint32_t photon, float t) {
+          const Part added = part(map.light(photon), t);
+          add(added);
+          note(photon, added);
+        });
+  }
+  float add_nearest(const PhotonMap& map, const SurfacePatch& patch, std::size_t count, float max_radius, int room,
+                    NearestPhotons& nearest) {
+    return add_nearest(map, patch, count, max_radius, room, nearest, [](std::uint32_t, const Part&) {});
   }
 
   // Adds it to what a path brings back that is weighted with `throughput`. `radius_squared` (m^2): of the disk; 0 adds nothing.

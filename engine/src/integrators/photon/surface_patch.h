@@ -27,11 +27,17 @@ class SurfacePatch {
         max_plane_distance_(kFlatness * radius) {}
 
   Vec3f position() const { return position_; }  // world, m
+  // Unit, on the side of wo; on the front where light passes the surface.
+  Vec3f normal() const { return side_ == PhotonSide::kBack ? -normal_ : normal_; }
+  float max_plane_distance() const { return max_plane_distance_; }  // m, of a photon's place from the tangent plane
+
+  // Whether the patch goes on where a surface has that geometric normal (unit, on its front); `d` leads there from position().
+  bool goes_on(Vec3f d, Vec3f normal) const { return near_plane(d) && turned_alike(normal); }
 
   // `d` leads from position() to the photon's place.
   bool accepts(Vec3f d, const PhotonLight& light) const {
-    if (!(std::fabs(dot(d, normal_)) <= max_plane_distance_)) return false;
-    if (light.normal_bits() != packed_normal_ && !turned_alike(light)) return false;
+    if (!near_plane(d)) return false;
+    if (light.normal_bits() != packed_normal_ && !turned_alike(light.normal())) return false;
     if (side_ != PhotonSide::kBoth && light.at_front() != (side_ == PhotonSide::kFront)) return false;
     return kinds_.contains(light.kind());
   }
@@ -41,8 +47,8 @@ class SurfacePatch {
   static constexpr float kFlatness = 0.2f;   // distance from the tangent plane over radius of the estimate
   static constexpr float kMinCosine = 0.9f;  // between the normals
 
-  bool turned_alike(const PhotonLight& light) const {
-    const Vec3f n = light.normal();
+  bool near_plane(Vec3f d) const { return std::fabs(dot(d, normal_)) <= max_plane_distance_; }
+  bool turned_alike(Vec3f n) const {
     const float cosine = dot(n, normal_);
     return cosine >= 0 && cosine * cosine >= kMinCosine * kMinCosine * length_squared(n);
   }
@@ -56,7 +62,7 @@ class SurfacePatch {
   std::uint32_t packed_normal_;
   PhotonSide side_;
   PhotonKinds kinds_;
-  float max_plane_distance_;  // m, of a photon's place from the tangent plane
+  float max_plane_distance_;
 };
 
 }  // namespace fluxfarm
