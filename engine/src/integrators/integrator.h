@@ -67,6 +67,9 @@ class Integrator {
   // Builds what the method needs for this scene. Called once, before anything below.
   virtual void prepare(const Scene& scene) = 0;
 
+  // The samples, those among them, that share what prepare_pass() makes.
+  virtual SampleRange prepared_with(SampleRange samples) const { return samples; }
+
   // What radiance() of any of these samples needs; null for a method that needs nothing. It depends on the scene, the seed and the
   // samples alone. Throws ResourceError, and CancelledError soon after `cancelled` becomes true.
   virtual std::shared_ptr<const PreparedPass> prepare_pass(std::uint64_t seed, SampleRange samples, int threads,

@@ -20,9 +20,10 @@ inline float power_heuristic(float pdf, float other_pdf) {
 
 // Light from outside that a ray finds whose direction was chosen with `pdf` (sr^-1; unused if next-event estimation could not have
 // found that direction: `delta`). Next-event estimation could have found that of the map, too, but never the constant one.
-// `map_share`: the part of the map's light that is to be found in this way at all.
-inline Rgb environment_found(const Scene& scene, Vec3f direction, bool delta, float pdf, float map_share = 1) {
-  Rgb found = scene.environment().value_or(Rgb{});
+// `map_share`, `constant_share`: the parts of their light that are to be found in this way at all.
+inline Rgb environment_found(const Scene& scene, Vec3f direction, bool delta, float pdf, float map_share = 1,
+                             float constant_share = 1) {
+  const Rgb found = scene.environment().value_or(Rgb{}) * constant_share;
   const auto& [map, choice_probability] = scene.environment_map();
   if (map == nullptr) return found;
   const auto [radiance, light_pdf] = map->from(direction);

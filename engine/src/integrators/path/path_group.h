@@ -55,6 +55,7 @@ class WithoutPhotons {
   void scatter_in_medium(State&, float) const {}
   // Parts that they leave to the path.
   float left_of_map(const State&, Vec3f) const { return 1; }
+  float left_of_constant(const State&) const { return 1; }
   float left_of_found(const State&, const AreaEmitter&, const SurfacePoint&, Vec3f) const { return 1; }
   float left_of_asked(const State&, const Rgb&, const Emitter&, const EmitterSample&) const { return 1; }
 };
@@ -71,7 +72,31 @@ class PathGroup {
 
   void trace(std::span<const CameraSample> samples, std::uint64_t seed, std::span<SampleResult> results) {
     start(samples, seed, results);
-    for (int depth = 0; paths_ > 0; ++depth) {
+    follow(0);
+  }
+
+  // Light that comes by way of other surfaces to a diffuse one, which is the `depth`-th on the way, along `rays` that start there.
+  // What next-event estimation would find there, as `reference` says, is left out. `sampler` holds the rays' samples, `results` are
+  // added to.
+  void trace_gathered(std::span<const Ray> rays, std::span<const typename Photons::State> states, const EmitterReference& reference,
+                      int depth, const SamplerBatch& sampler, std::span<SampleResult> results) {
+    sampler_ = sampler;
+    paths_ = rays.size();
+    BsdfSample diffuse;
+    LightHistory history;
+    history.scatter_at_surface(diffuse);
+    for (std::size_t i = 0; i < paths_; ++i) {
+      rays_[i] = rays[i];
+      references_[i] = reference;
+      path_[i] = {.bsdf_pdf = 0, .delta = false, .history = history, .result = &results[i], .photons = states[i]};
+    }
+    follow(depth);
+  }
+
+ private:
+  // From the depth-th surface on, counting from 0.
+  void follow(int depth) {
+    for (; paths_ > 0; ++depth) {
       sampler_.draw_2d(dimension_of(depth, kDirection), u_direction_);
       if (!scene_.emitters().empty()) sampler_.draw_2d(dimension_of(depth, kEmitterPoint), u_emitter_);
       queries_.intersect({rays_.data(), paths_}, {hits_.data(), paths_}, depth == 0);
@@ -99,7 +124,6 @@ class PathGroup {
     }
   }
 
- private:
   void start(std::span<const CameraSample> samples, std::uint64_t seed, std::span<SampleResult> results) {
     start_camera_rays(scene_, samples, seed, sampler_, rays_);
     paths_ = samples.size();
@@ -118,7 +142,8 @@ class PathGroup {
     if (hit.shape == Hit::kNone) {
       if (shows_emitters) {
         const Rgb found =
-            environment_found(scene_, ray.direction, path.delta, path.bsdf_pdf, photons_.left_of_map(path.photons, ray.direction));
+            environment_found(scene_, ray.direction, path.delta, path.bsdf_pdf, photons_.left_of_map(path.photons, ray.direction),
+                              photons_.left_of_constant(path.photons));
         path.result->add(path.throughput * found, path.history.layer());
       }
       return false;

@@ -56,6 +56,7 @@ class CausticPhotons {
     if (map == nullptr) return 1;
     return state.share.left_of_found({0, 1 / map->from(direction).pdf_solid_angle});
   }
+  float left_of_constant(const State&) const { return 1; }
   float left_of_found(const State& state, const AreaEmitter& emitter, const SurfacePoint& point, Vec3f direction) const {
     return state.share.left_of_found(emitter.apparent_size(point, direction));
   }

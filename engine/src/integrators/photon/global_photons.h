@@ -70,6 +70,7 @@ class GlobalPhotons {
     const EnvmapEmitter* map = scene_.environment_map().emitter;
     return map == nullptr ? 1 : left(state.from_gathering, state.value, 1 / map->from(direction).pdf_solid_angle);
   }
+  float left_of_constant(const State&) const { return 1; }
   float left_of_found(const State& state, const AreaEmitter& emitter, const SurfacePoint& point, Vec3f direction) const {
     return left(state.from_gathering, state.value, emitter.apparent_size(point, direction).from(state.travelled));
   }
