@@ -61,14 +61,15 @@ class Integrator {
   enum class Bias { kNone, kFalling, kFixed };
   virtual Bias bias() const { return Bias::kNone; }
 
+  // What it makes ahead of its samples; told to whoever asks for a plan.
+  enum class Store { kNone, kPhotonMaps, kIrradianceCache };
+  virtual Store store() const { return Store::kNone; }
+
   // Whether it finds light of delta emitters over delta lobes, which no path that starts at the camera can.
   virtual bool finds_caustics() const { return false; }
 
   // Builds what the method needs for this scene. Called once, before anything below.
   virtual void prepare(const Scene& scene) = 0;
-
-  // The samples, those among them, that share what prepare_pass() makes.
-  virtual SampleRange prepared_with(SampleRange samples) const { return samples; }
 
   // What radiance() of any of these samples needs; null for a method that needs nothing. It depends on the scene, the seed and the
   // samples alone. Throws ResourceError, and CancelledError soon after `cancelled` becomes true.

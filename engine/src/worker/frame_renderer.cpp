@@ -56,20 +56,15 @@ FrameResult render_frame(const Scene& scene, const Integrator& integrator, const
   if (goal.rel_error) {
     audit = audit_light(scene, settings.crop, settings.seed, settings.threads, cancelled, integrator.finds_caustics());
   }
-  std::shared_ptr<const PreparedPass> prepared;
-  SampleRange prepared_for;
   std::optional<Round> round = begin(settings, tiles.size());
   for (int number = 1; round; ++number) {
     std::optional<ErrorLook> look;
     for (std::uint32_t done = round->samples.begin; done < round->samples.end;) {
       SampleRange pass = next_pass(done, round->samples.end);
       if (goal.seconds && !result.timeline.empty() && !cut_to_time(pass, *goal.seconds, result.timeline.back())) break;
-      if (const SampleRange shared = integrator.prepared_with(pass); shared != prepared_for) {
-        prepared.reset();  // before the next one takes its memory
-        prepared = integrator.prepare_pass(settings.seed, shared, settings.threads, cancelled);
-        prepared_for = shared;
-        if (prepared) result.rays += prepared->rays();
-      }
+      const std::shared_ptr<const PreparedPass> prepared =
+          integrator.prepare_pass(settings.seed, pass, settings.threads, cancelled);
+      if (prepared) result.rays += prepared->rays();
       parallel_for(round->tiles.size(), settings.threads, [&](std::size_t index, int thread) {
         prepare_render_thread();
         const TileTask task{tiles[round->tiles[index]], pass, settings.seed, prepared.get()};

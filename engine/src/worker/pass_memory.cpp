@@ -6,10 +6,9 @@ namespace fluxfarm {
 
 std::shared_ptr<const PreparedPass> PassMemory::find(const SceneKey& key, const Integrator& integrator, std::uint64_t seed,
                                                      SampleRange samples, int threads, const std::atomic<bool>& cancelled) {
-  const SampleRange shared = integrator.prepared_with(samples);
-  const std::shared_ptr<Entry> found = entry(key, seed, shared);
+  const std::shared_ptr<Entry> found = entry(key, seed, samples);
   const std::lock_guard lock(found->mutex);
-  if (!found->pass) found->pass = integrator.prepare_pass(seed, shared, threads, cancelled);
+  if (!found->pass) found->pass = integrator.prepare_pass(seed, samples, threads, cancelled);
   return *found->pass;
 }
 

@@ -20,6 +20,8 @@ std::string plan_json(const Scene& scene, const Integrator& integrator) {
   const std::size_t emitters =
       census.area_emitters + census.point_emitters + census.spot_emitters + census.directional_emitters + census.environment_map;
   const AuditNeed audit = audit_need(scene);
+  const bool photon_maps = integrator.store() == Integrator::Store::kPhotonMaps;
+  const bool irradiance_cache = integrator.store() == Integrator::Store::kIrradianceCache;
   const nlohmann::json plan = {
       {"integrator", integrator.name()},
       {"census",
@@ -47,8 +49,8 @@ std::string plan_json(const Scene& scene, const Integrator& integrator) {
         part("emitter choice", emitters > 1, count(emitters, "emitter") + " to choose from"),
         part("emitter tree", scene.emitters().by_place(), count(scene.emitters().candidates(), "emitter or triangle")),
         part("light-side audit", audit.kind == AuditNeed::kNeeded, audit.reason),
-        part("photon maps", integrator.bias() != Integrator::Bias::kNone,
-             integrator.bias() != Integrator::Bias::kNone ? "the method has them" : "the method has none"),
+        part("photon maps", photon_maps, photon_maps ? "the method has them" : "the method has none"),
+        part("irradiance cache", irradiance_cache, irradiance_cache ? "the method has one" : "the method has none"),
         part("environment", census.environment, census.environment ? "a constant environment" : "no environment"),
         part("environment map", census.environment_map, census.environment_map ? "an envmap" : "no envmap"),
         part("tangent frames", census.anisotropic_materials || census.normal_maps,

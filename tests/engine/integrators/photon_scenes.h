@@ -59,8 +59,9 @@ inline Film render(const Scene& scene, const char* method, std::uint32_t spp, st
   return render_frame(scene, *integrator, {frame, tile, threads, seed, {spp, {}, {}}}, kNever).film;
 }
 
-inline void expect_bits_of_neither_threads_nor_tiles(const Scene& scene) {
-  const Film one = render(scene, "photon-progressive", 5, 3, 1, 64), other = render(scene, "photon-progressive", 5, 3, 3, 16);
+inline void expect_bits_of_neither_threads_nor_tiles(const Scene& scene, const char* method = "photon-progressive",
+                                                     std::uint32_t spp = 5) {
+  const Film one = render(scene, method, spp, 3, 1, 64), other = render(scene, method, spp, 3, 3, 16);
   for (int y = 0; y < one.height(); ++y) {
     for (int x = 0; x < one.width(); ++x) {
       ASSERT_EQ(one.estimate(x, y).mean, other.estimate(x, y).mean) << x << " " << y;

@@ -3,9 +3,9 @@
 //
 // Parameters (MethodDescription): max_depth, rr_depth and hide_emitters as of the path tracer.
 //
-// Good for: rooms with diffuse walls. Poor for: caustics, which the records' paths find as badly as all paths; detail finer than a
-// few pixels, where no record is made and paths are traced. Surfaces that are not diffuse are path traced. Participating media are
-// not modelled.
+// Good for: rooms with diffuse walls. Poor for: detail finer than a few pixels, where no record is made and paths are traced.
+// Surfaces that are not diffuse are path traced. In a scene with glossy surfaces photons carry caustics, as in photon-progressive.
+// Participating media are not modelled.
 //
 // Each of a pixel's replicates takes the light of its own strata of each record's hemisphere: error.noise holds the records' noise.
 // error.bias is what the records' Hessians say that their gradients leave out.
@@ -14,25 +14,43 @@
 #pragma once
 
 #include <memory>
+#include <mutex>
+#include <optional>
 
 #include "integrators/integrator.h"
+#include "integrators/irradiance/irradiance_cache.h"
+#include "integrators/photon/projection_map.h"
 
 namespace fluxfarm {
 
 class IrradianceCacheIntegrator final : public Integrator {
  public:
   const char* name() const override { return "irradiance-cache"; }
-  Bias bias() const override { return Bias::kFalling; }
+  Bias bias() const override { return paths_ ? Bias::kNone : Bias::kFalling; }
+  Store store() const override { return paths_ ? Store::kNone : Store::kIrradianceCache; }
+  bool finds_caustics() const override { return projection_.has_value(); }
   // Throws SettingError if the scene has what the method does not model.
   void prepare(const Scene& scene) override;
-  SampleRange prepared_with(SampleRange samples) const override;
   std::shared_ptr<const PreparedPass> prepare_pass(std::uint64_t seed, SampleRange samples, int threads,
                                                    const std::atomic<bool>& cancelled) const override;
   void radiance(std::span<const CameraSample> samples, std::uint64_t seed, const PreparedPass* pass,
                 std::span<SampleResult> results, RayQueries& queries) const override;
 
  private:
+  struct Level {
+    std::uint64_t seed;
+    SampleRange samples;
+    std::shared_ptr<const IrradianceCache> cache;
+    std::uint64_t rays;
+  };
+  Level level(std::uint64_t seed, SampleRange samples, int threads, const std::atomic<bool>& cancelled) const;
+
   const Scene* scene_ = nullptr;
+  std::optional<ProjectionMap> projection_;  // for caustics; nothing: there are none, or emitters cannot shine there
+  // The level that was asked for last: several passes share its cache.
+  mutable std::mutex mutex_;
+  mutable std::optional<Level> level_;
+  std::unique_ptr<Integrator> paths_;  // does all the work where no surface is diffuse; else null
 };
 
 }  // namespace fluxfarm

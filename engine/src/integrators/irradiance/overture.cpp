@@ -27,10 +27,10 @@ constexpr float kLeastIrradiance = 0.1f * kPi;  // W m^-2
 
 class OvertureBuilder {
  public:
-  OvertureBuilder(const Scene& scene, std::uint64_t seed, const CacheQuality& quality, int threads,
+  OvertureBuilder(const Scene& scene, const CausticMaps* caustics, std::uint64_t seed, const CacheQuality& quality, int threads,
                   const std::atomic<bool>& cancelled)
       : scene_(scene), seed_(seed), quality_(quality), threads_(threads), cancelled_(cancelled) {
-    for (int i = 0; i < threads; ++i) workers_.emplace_back(std::make_unique<Worker>(scene));
+    for (int i = 0; i < threads; ++i) workers_.emplace_back(std::make_unique<Worker>(scene, caustics));
   }
 
   Overture build() {
@@ -45,9 +45,10 @@ class OvertureBuilder {
 
  private:
   struct Worker {
-    explicit Worker(const Scene& scene) : queries(scene.accelerator()), sampler(scene, queries) {}
+    Worker(const Scene& scene, const CausticMaps* caustics)
+        : queries(scene.accelerator()), sampler(make_hemisphere_sampler(scene, caustics, queries)) {}
     RayQueries queries;
-    HemisphereSampler sampler;
+    std::unique_ptr<HemisphereSampler> sampler;
   };
 
   void check_cancelled() const {
@@ -111,12 +112,8 @@ class OvertureBuilder {
         if (!(vertex.wo.z > 0) || vertex.bsdf->albedo(vertex.wo).is_black()) return std::nullopt;
         const ReceivingPlace receiving = receiving_place(vertex, max_depth - depth);
         if (cache_.covers(receiving) || refused_.covers(receiving)) return std::nullopt;
-        return GatherPlace{vertex.point.position,
-                           vertex.frame,
-                           vertex.origin_towards(vertex.frame.n),
-                           depth,
-                           receiving.room,
-                           scene_.camera().pixel_angle() * length};
+        return GatherPlace{vertex.point.position, vertex.frame, vertex.origin_towards(vertex.frame.n), depth,
+                           receiving.room,        length};
       }
       sampler.draw_2d(dimension_of(depth, kDirection), u);
       const std::optional<BsdfSample> scatter =
@@ -133,18 +130,18 @@ class OvertureBuilder {
     bool kept = false;
   };
   Made make(const GatherPlace& place, int index, Worker& worker) const {
-    const float least = kLeastRadius * place.footprint;
+    const float footprint = scene_.camera().pixel_angle() * place.length, least = kLeastRadius * footprint;
     const RecordLimits limits{quality_.tolerance, kLeastIrradiance, kLargestRadius * scene_.radius()};
-    const RecordLimits refused{quality_.tolerance, kLeastIrradiance, kRefusedRadius * place.footprint};
+    const RecordLimits refused{quality_.tolerance, kLeastIrradiance, kRefusedRadius * footprint};
     const float far = 1e3f * scene_.radius();
     const auto refuse = [&] {
       HemisphereIrradiance flat;
       flat.irradiance = Rgb{1};
       return Made{IrradianceRecord(place.position, place.frame, place.room, flat, refused), false};
     };
-    if (worker.sampler.least_distance(place) < kLeastRoom * place.footprint) return refuse();
+    if (least_distance(place, worker.queries) < kLeastRoom * footprint) return refuse();
     HemisphereGrid grid(quality_.strata, far);
-    worker.sampler.gather(place, seed_, index, grid);
+    worker.sampler->gather(place, seed_, index, grid);
     const IrradianceRecord record(place.position, place.frame, place.room, grid.irradiance(), limits);
     if (record.larger_radius() * record.smaller_radius() < least * least) return refuse();
     return {record, true};
@@ -163,9 +160,9 @@ class OvertureBuilder {
 
 }  // namespace
 
-Overture make_overture(const Scene& scene, std::uint64_t seed, const CacheQuality& quality, int threads,
-                       const std::atomic<bool>& cancelled) {
-  return OvertureBuilder(scene, seed, quality, threads, cancelled).build();
+Overture make_overture(const Scene& scene, const CausticMaps* caustics, std::uint64_t seed, const CacheQuality& quality,
+                       int threads, const std::atomic<bool>& cancelled) {
+  return OvertureBuilder(scene, caustics, seed, quality, threads, cancelled).build();
 }
 
 }  // namespace fluxfarm

@@ -11,6 +11,7 @@
 #include "integrators/integrator.h"
 #include "integrators/irradiance/cache_quality.h"
 #include "integrators/irradiance/irradiance_cache.h"
+#include "integrators/photon/caustic_maps.h"
 #include "scene/scene.h"
 
 namespace fluxfarm {
@@ -20,8 +21,8 @@ struct Overture {
   std::uint64_t rays = 0;
 };
 
-// Throws CancelledError soon after `cancelled` becomes true.
-Overture make_overture(const Scene& scene, std::uint64_t seed, const CacheQuality& quality, int threads,
-                       const std::atomic<bool>& cancelled);
+// `caustics`: as for make_hemisphere_sampler(). Throws CancelledError soon after `cancelled` becomes true.
+Overture make_overture(const Scene& scene, const CausticMaps* caustics, std::uint64_t seed, const CacheQuality& quality,
+                       int threads, const std::atomic<bool>& cancelled);
 
 }  // namespace fluxfarm

@@ -25,6 +25,7 @@ class PhotonIntegrator final : public Integrator {
  public:
   const char* name() const override { return "photon"; }
   Bias bias() const override { return Bias::kFixed; }
+  Store store() const override { return Store::kPhotonMaps; }
   bool finds_caustics() const override { return true; }
   // Throws SettingError if the scene has nothing to shoot or to shoot at.
   void prepare(const Scene& scene) override;
