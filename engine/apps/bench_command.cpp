@@ -1,14 +1,16 @@
-// fluxfarm-engine bench: path here, photons in bench_photons.h.
+// fluxfarm-engine bench: path here, photons in bench_photons.h, irradiance in bench_irradiance.h.
 //
 // bench path: how much of bare Embree's ray rate path tracing reaches, on the rays that it really traces. The rays of tiles spread
 // over the picture are recorded; then rounds of path tracing those tiles and rounds of tracing their recorded rays alone take
 // turns, and the medians are compared, so that a machine that slows down for a while slows down both.
 #include <atomic>
 #include <cstdio>
+#include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <numeric>
 
+#include "bench_irradiance.h"
 #include "bench_photons.h"
 #include "bench_tools.h"
 #include "commands.h"
@@ -128,12 +130,14 @@ nlohmann::json bench_path(const Scene& scene, int threads) {
 }
 
 void bench(const BenchOptions& options) {
-  if (options.what != "path" && options.what != "photons")
-    throw SettingError("bench " + options.what + ", expected path or photons");
+  using Bench = nlohmann::json (*)(const Scene&, int);
+  const std::map<std::string, Bench> benches{{"path", bench_path}, {"photons", bench_photons}, {"irradiance", bench_irradiance}};
+  const auto found = benches.find(options.what);
+  if (found == benches.end()) throw SettingError("bench " + options.what + ", expected path, photons or irradiance");
   const int threads = resolve_threads(options.threads);
   const Scene scene(options.scene.read(), threads);
   nlohmann::ordered_json result = {{"scene", options.scene.scene.string()}, {"threads", threads}};
-  result.update(options.what == "path" ? bench_path(scene, threads) : bench_photons(scene, threads));
+  result.update(found->second(scene, threads));
   if (options.json) {
     std::printf("%s\n", result.dump(2).c_str());
     return;
@@ -144,10 +148,10 @@ void bench(const BenchOptions& options) {
 }  // namespace
 
 void add_bench_command(CLI::App& app) {
-  CLI::App* command = app.add_subcommand("bench", "Measure the engine: bench [path|photons] SCENE");
+  CLI::App* command = app.add_subcommand("bench", "Measure the engine: bench [path|photons|irradiance] SCENE");
   const auto options = std::make_shared<BenchOptions>();
   const auto words = std::make_shared<std::vector<std::string>>();
-  command->add_option("WHAT_AND_SCENE", *words, "What to measure (path, the default, or photons) and the scene file")
+  command->add_option("WHAT_AND_SCENE", *words, "What to measure (path, the default, photons or irradiance) and the scene file")
       ->required()
       ->expected(1, 2);
   command->add_option("--size", options->scene.size, "Film size WxH in pixels");

@@ -5,6 +5,7 @@
 #include <limits>
 #include <vector>
 
+#include "bench_places.h"
 #include "bench_tools.h"
 #include "integrators/path/path_vertex.h"
 #include "integrators/photon/density_estimate.h"
@@ -20,50 +21,8 @@ namespace {
 constexpr int kRounds = 5;
 constexpr std::uint64_t kShot = 1'000'000;
 constexpr std::size_t kInMap = 1'000'000;  // photons, about
-constexpr std::size_t kEstimates = 200'000, kNearest = 100;
-constexpr std::size_t kPart = 1000;  // estimates that a thread takes at once
+constexpr std::size_t kNearest = 100;
 constexpr std::size_t kMaxStored = std::size_t{1} << 27;
-
-// Where the camera sees surfaces that photons are stored on: pixel after pixel, as a picture would ask.
-std::vector<PathVertex> seen_places(const Scene& scene) {
-  std::vector<PathVertex> places;
-  RayQueries queries(scene.accelerator());
-  BsdfSpace space;
-  const auto width = static_cast<std::size_t>(scene.film().width), height = static_cast<std::size_t>(scene.film().height);
-  const std::size_t samples = kEstimates / (width * height) + 1, step = std::max<std::size_t>(width * height / kEstimates, 1);
-  for (std::size_t pixel = 0; pixel < width * height; pixel += step) {
-    const std::size_t column = pixel % width, row = pixel / width;
-    for (std::size_t i = 0; i < samples; ++i) {
-      const float shift = (static_cast<float>(i) + 0.5f) / static_cast<float>(samples);
-      const Ray ray = scene.camera().ray(static_cast<float>(column) + shift, static_cast<float>(row) + 0.5f);
-      Hit hit;
-      queries.intersect({&ray, 1}, {&hit, 1}, false);
-      if (hit.shape == Hit::kNone || !scene.surface(hit.shape).has_continuous_lobe) continue;
-      places.emplace_back(scene, ray, hit, space);
-    }
-  }
-  if (places.empty()) throw Error("the camera sees no surface that photons are stored on: there is nothing to measure");
-  return places;
-}
-
-// Estimates a second. `make_estimate()` gives each thread its function of a place.
-template <typename MakeEstimate>
-double rate(const std::vector<PathVertex>& places, int threads, MakeEstimate&& make_estimate) {
-  std::atomic<double> all{0};  // so that nothing is left out
-  const BenchClock::time_point start = BenchClock::now();
-  parallel_for((places.size() + kPart - 1) / kPart, threads, [&](std::size_t part, int) {
-    prepare_render_thread();
-    auto estimate = make_estimate();
-    double sum = 0;
-    for (std::size_t i = part * kPart; i < std::min(places.size(), (part + 1) * kPart); ++i) {
-      sum += static_cast<double>(mean(estimate(places[i])));
-    }
-    all += sum;
-  });
-  const double seconds = seconds_since(start);
-  if (!(all > 0)) throw Error("the estimates found no light: there is nothing to measure");
-  return static_cast<double>(places.size()) / seconds;
-}
 
 constexpr float kFar = 1e18f;  // m
 
@@ -116,7 +75,8 @@ nlohmann::json bench_photons(const Scene& scene, int threads) {
     build_seconds.push_back(seconds_since(start));
   }
 
-  const std::vector<PathVertex> places = seen_places(scene);
+  const std::vector<PathVertex> places =
+      seen_places(scene, [](const Scene::Surface& surface) { return surface.has_continuous_lobe; });
   // The radius within which there are usually so many photons, for the estimates by radius.
   std::vector<double> radii;
   NearestPhotons found;
@@ -126,14 +86,14 @@ nlohmann::json bench_photons(const Scene& scene, int threads) {
   }
   const auto radius = static_cast<float>(median(radii));
   const auto nearest_rate = [&] {
-    return rate(places, threads, [&] {
+    return asked_per_second(places, threads, [&] {
       return [&, workspace = NearestPhotons()](const PathVertex& place) mutable {
         return estimate_by_nearest(map, {place, kFar}, kNearest, kFar, BoxKernel{}, workspace).value;
       };
     });
   };
   const auto within_rate = [&] {
-    return rate(places, threads, [&] {
+    return asked_per_second(places, threads, [&] {
       return [&](const PathVertex& place) { return estimate_within(map, {place, radius}, radius, BoxKernel{}).value; };
     });
   };
@@ -149,7 +109,7 @@ nlohmann::json bench_photons(const Scene& scene, int threads) {
     within_rates.push_back(within_rate());
 #ifdef FLUXFARM_NANOFLANN
     const auto other_rate = [&](auto&& estimate) {
-      return rate(places, threads, [&] {
+      return asked_per_second(places, threads, [&] {
         return [&, space = NanoflannMap::Workspace()](const PathVertex& place) mutable { return estimate(place, space); };
       });
     };

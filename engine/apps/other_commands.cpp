@@ -66,7 +66,7 @@ void add_plan_command(CLI::App& app) {
   options->add_to(*command, false);
   command->add_flag("--json", *json, "As JSON");
   const auto integrator = std::make_shared<std::string>("auto");
-  command->add_option("--integrator", *integrator, "Method: auto, path, photon or photon-progressive")->capture_default_str();
+  command->add_option("--integrator", *integrator, "Method: auto, path, photon, photon-progressive or irradiance-cache")->capture_default_str();
   command->callback([options, integrator, json] { print_plan(*options, *integrator, *json); });
 }
 

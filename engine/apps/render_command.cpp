@@ -148,7 +148,7 @@ void add_render_command(CLI::App& app) {
   command->add_option("-o,--output", options->exr, "EXR file to write")->required();
   command->add_option("--png", options->png, "Also write a tone-mapped PNG");
   command->add_option("--report", options->report, "Write figures of the run as JSON");
-  command->add_option("--integrator", options->integrator, "Method: auto, path, photon or photon-progressive")
+  command->add_option("--integrator", options->integrator, "Method: auto, path, photon, photon-progressive or irradiance-cache")
       ->capture_default_str();
   auto* spp = command->add_option("--spp", options->goal.spp, "Samples per pixel")->check(CLI::Range(1u, 1u << 24));
   auto* seconds = command->add_option("--seconds", options->goal.seconds, "Time budget in seconds")->check(CLI::PositiveNumber);

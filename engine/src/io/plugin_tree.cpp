@@ -41,6 +41,7 @@ constexpr KnownPlugin kKnownPlugins[] = {
     {"path", PluginKind::kIntegrator},
     {"photon", PluginKind::kIntegrator},
     {"photon-progressive", PluginKind::kIntegrator},
+    {"irradiance-cache", PluginKind::kIntegrator},
     {"perspective", PluginKind::kSensor},
     {"independent", PluginKind::kSampler},
     {"stratified", PluginKind::kSampler},

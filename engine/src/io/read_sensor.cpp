@@ -119,7 +119,7 @@ MethodDescription read_integrator(const PluginNode& integrator) {
   MethodDescription method;
   // With or without media: whether there are any is seen in the scene.
   const bool photon = integrator.type == "photon", progressive = integrator.type == "photon-progressive";
-  method.integrator = photon || progressive ? integrator.type : "path";
+  method.integrator = photon || progressive || integrator.type == "irradiance-cache" ? integrator.type : "path";
   method.max_depth = static_cast<int>(properties.integer("max_depth", -1, kInt32));
   method.rr_depth = static_cast<int>(properties.integer("rr_depth", 5, {1, 2147483647}));
   method.hide_emitters = properties.boolean("hide_emitters", false);
