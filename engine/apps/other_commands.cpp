@@ -65,8 +65,9 @@ void add_plan_command(CLI::App& app) {
   const auto json = std::make_shared<bool>(false);
   options->add_to(*command, false);
   command->add_flag("--json", *json, "As JSON");
-  const auto integrator = std::make_shared<std::string>("auto");
-  command->add_option("--integrator", *integrator, "Method: auto, path, photon, photon-progressive or irradiance-cache")->capture_default_str();
+  const auto integrator = std::make_shared<std::string>();
+  command->add_option("--integrator", *integrator,
+                      "Method: auto, path, photon, photon-progressive or irradiance-cache; default: as the scene says");
   command->callback([options, integrator, json] { print_plan(*options, *integrator, *json); });
 }
 

@@ -26,7 +26,7 @@ namespace {
 struct RenderOptions {
   SceneOptions scene;
   std::filesystem::path exr, png, report;
-  std::string integrator = "auto";
+  std::string integrator;  // "": as the scene says
   Goal goal;
   int threads = 0, tile = 64;
   std::uint64_t seed = 0;
@@ -148,8 +148,8 @@ void add_render_command(CLI::App& app) {
   command->add_option("-o,--output", options->exr, "EXR file to write")->required();
   command->add_option("--png", options->png, "Also write a tone-mapped PNG");
   command->add_option("--report", options->report, "Write figures of the run as JSON");
-  command->add_option("--integrator", options->integrator, "Method: auto, path, photon, photon-progressive or irradiance-cache")
-      ->capture_default_str();
+  command->add_option("--integrator", options->integrator,
+                      "Method: auto, path, photon, photon-progressive or irradiance-cache; default: as the scene says");
   auto* spp = command->add_option("--spp", options->goal.spp, "Samples per pixel")->check(CLI::Range(1u, 1u << 24));
   auto* seconds = command->add_option("--seconds", options->goal.seconds, "Time budget in seconds")->check(CLI::PositiveNumber);
   auto* error = command->add_option("--rel-error", options->goal.rel_error, "Stop at this estimated relative error, sqrt(relMSE)")

@@ -70,6 +70,18 @@ def test_crop_is_the_same_part_of_the_frame(tmp_path: Path) -> None:
     assert crop["R"].tobytes() == whole["R"][5:16, 10:30].copy().tobytes()
 
 
+@pytest.mark.parametrize("method", ["path", "photon", "photon-progressive", "irradiance-cache"])
+def test_scene_names_its_method_and_an_option_another(method: str, tmp_path: Path) -> None:
+    text = (ROOT / "scenes" / "cornell-glass" / "scene.xml").read_text()
+    scene = tmp_path / "scene.xml"
+    scene.write_text(text.replace('<integrator type="path"', f'<integrator type="{method}"'))
+    assert method == "path" or scene.read_text() != text
+    for options, expected in (((), method), (("--integrator", "path"), "path")):
+        render_alone(scene, tmp_path / "out.exr", "--size", "16x9", "--spp", 1, *options)
+        header = OpenEXR.File(str(tmp_path / "out.exr"), header_only=True).header()
+        assert header["fluxfarm.integrator"] == expected
+
+
 def test_image_header_names_what_made_it(tmp_path: Path) -> None:
     render_alone(SCENE, tmp_path / "out.exr", "--size", "16x16", "--spp", 8, "--seed", 3)
     header = OpenEXR.File(str(tmp_path / "out.exr"), header_only=True).header()
