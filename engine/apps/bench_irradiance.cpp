@@ -33,6 +33,7 @@ nlohmann::json bench_irradiance(const Scene& scene, int threads) {
   const std::vector<PathVertex> places = seen_places(scene, takes_irradiance);
   const int room = scene.method().max_depth < 0 ? IrradianceRecord::kMostRoom : scene.method().max_depth;
   std::vector<double> rates;
+  rates.reserve(kRounds);
   std::size_t known = 0;
   for (const PathVertex& place : places) known += cache.covers(receiving_place(place, room)) ? 1 : 0;
   for (int round = 0; round < kRounds; ++round) {

@@ -50,8 +50,8 @@ class HemisphereGrid {
   // Stratum `index` by rows: where it lies in the unit square, u in [0,1)^2 moves in it.
   Vec2f place(std::size_t index, Vec2f u) const {
     const auto n = static_cast<std::size_t>(strata_);
-    return {(static_cast<float>(index % n) + u.x) / static_cast<float>(n),
-            (static_cast<float>(index / n) + u.y) / static_cast<float>(n)};
+    const std::size_t column = index % n, row = index / n;
+    return {(static_cast<float>(column) + u.x) / static_cast<float>(n), (static_cast<float>(row) + u.y) / static_cast<float>(n)};
   }
   // Each replicate has one stratum in any kReplicates of a row, three columns on in the next row.
   std::uint32_t replicate(std::size_t index) const {

@@ -103,7 +103,8 @@ float least_distance(const GatherPlace& place, RayQueries& queries) {
   std::array<Ray, kSide * kSide> rays;
   std::array<Hit, kSide * kSide> hits;
   for (std::size_t i = 0; i < rays.size(); ++i) {
-    const Vec2f u{(static_cast<float>(i % kSide) + 0.5f) / kSide, (static_cast<float>(i / kSide) + 0.5f) / kSide};
+    const std::size_t column = i % kSide, row = i / kSide;
+    const Vec2f u{(static_cast<float>(column) + 0.5f) / kSide, (static_cast<float>(row) + 0.5f) / kSide};
     rays[i] = {place.origin, place.frame.to_world(square_to_cosine_hemisphere(u))};
   }
   queries.intersect(rays, hits, false);

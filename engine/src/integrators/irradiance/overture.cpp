@@ -143,7 +143,7 @@ class OvertureBuilder {
     HemisphereGrid grid(quality_.strata, far);
     worker.sampler->gather(place, seed_, index, grid);
     const IrradianceRecord record(place.position, place.frame, place.room, grid.irradiance(), limits);
-    if (record.larger_radius() * record.smaller_radius() < least * least) return refuse();
+    if (!(record.larger_radius() * record.smaller_radius() >= least * least)) return refuse();
     return {record, true};
   }
 
