@@ -11,6 +11,7 @@ ALL = {"direct", "specular", "caustic", "indirect", "volume"}
 OF = {
     "cornell": {"direct", "indirect"},  # no glass, mirror or medium
     "cornell-glass": {"direct", "specular", "caustic", "indirect"},
+    "interior": {"direct", "indirect"},
 }
 
 
