@@ -1,5 +1,6 @@
 #include "integrators/irradiance/irradiance_cache_integrator.h"
 
+#include <algorithm>
 #include <numeric>
 
 #include "integrators/irradiance/cache_quality.h"
@@ -29,6 +30,9 @@ class CachedPass final : public PreparedPass {
   std::unique_ptr<const CausticMaps> caustics_;  // null: photons carry nothing
   std::uint64_t rays_;
 };
+
+// Two megabytes of records each, as a rule.
+constexpr std::size_t kKeptLevels = 4;
 
 bool has_caustics(const Scene& scene) {
   const std::vector<double> powers = ParticleSource::powers(scene);
@@ -64,18 +68,21 @@ void IrradianceCacheIntegrator::prepare(const Scene& scene) {
 IrradianceCacheIntegrator::Level IrradianceCacheIntegrator::level(std::uint64_t seed, SampleRange samples, int threads,
                                                                   const std::atomic<bool>& cancelled) const {
   const std::lock_guard lock(mutex_);
-  if (level_ && level_->seed == seed && level_->samples == samples) {
-    Level known = *level_;
-    known.rays = 0;
-    return known;
+  const auto known = std::ranges::find_if(levels_, [&](const Level& l) { return l.seed == seed && l.samples == samples; });
+  if (known != levels_.end()) {
+    levels_.splice(levels_.begin(), levels_, known);
+    Level again = *known;
+    again.rays = 0;  // it took none this time
+    return again;
   }
   std::optional<CausticMaps> caustics;
   const std::uint64_t own_seed = hash_words(seed, samples.begin);
   if (projection_) caustics.emplace(*scene_, &*projection_, own_seed, SampleRange{0, kReplicates}, threads, cancelled);
   Overture overture = make_overture(*scene_, caustics ? &*caustics : nullptr, own_seed, quality_of(samples), threads, cancelled);
-  level_ = Level{seed, samples, std::make_shared<const IrradianceCache>(std::move(overture.cache)),
-                 overture.rays + (caustics ? caustics->rays() : 0)};
-  return *level_;
+  levels_.push_front({seed, samples, std::make_shared<const IrradianceCache>(std::move(overture.cache)),
+                      overture.rays + (caustics ? caustics->rays() : 0)});
+  if (levels_.size() > kKeptLevels) levels_.pop_back();
+  return levels_.front();
 }
 
 std::shared_ptr<const PreparedPass> IrradianceCacheIntegrator::prepare_pass(std::uint64_t seed, SampleRange samples, int threads,

@@ -13,6 +13,7 @@
 // [Ward88] G. Ward, F. Rubinstein, R. Clear, "A Ray Tracing Solution for Diffuse Interreflection", SIGGRAPH 1988.
 #pragma once
 
+#include <list>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -47,9 +48,9 @@ class IrradianceCacheIntegrator final : public Integrator {
 
   const Scene* scene_ = nullptr;
   std::optional<ProjectionMap> projection_;  // for caustics; nothing: there are none, or emitters cannot shine there
-  // The level that was asked for last: several passes share its cache.
+  // The levels that were asked for last: several passes share a cache, and rounds of an error goal go back and forth.
   mutable std::mutex mutex_;
-  mutable std::optional<Level> level_;
+  mutable std::list<Level> levels_;    // most recently used first
   std::unique_ptr<Integrator> paths_;  // does all the work where no surface is diffuse; else null
 };
 
