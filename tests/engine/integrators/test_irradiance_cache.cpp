@@ -80,6 +80,21 @@ TEST(IrradianceRecord, GoesOnWithItsGradients) {
   EXPECT_EQ(record.use_at(kPlace + kFrame.to_world({0, 0, 0.6f}), kFrame.n, 4).weight, 0);  // on another surface above it
 }
 
+TEST(IrradianceRecord, IsUsedOnItsOwnSurfaceAlone) {
+  RecordLimits limits = kLimits;
+  limits.max_radius = 0.5f;
+  const IrradianceRecord record(kPlace, kFrame, 9, even_light(2), limits);
+  const auto weight = [&](Vec3f place, Vec3f normal) {
+    return record.use_at(kPlace + kFrame.to_world(place), kFrame.to_world(normalize(normal)), 4).weight;
+  };
+  EXPECT_GT(weight({0.2f, 0, 0}, {0, 0, 1}), 0.5f);
+  EXPECT_EQ(weight({0.2f, 0, 0.05f}, {0, 0, 1}), 0);  // a step up
+  EXPECT_EQ(weight({0.2f, 0, -0.05f}, {0, 0, 1}), 0);
+  EXPECT_GT(weight({0.2f, 0, -0.02f}, {0.2f, 0, 1}), 0.4f);  // a bend: z = -x^2 / 2
+  EXPECT_GT(weight({0.2f, 0, 0}, {0.2f, 0, 1}), 0.4f);       // normals of a bump map
+  EXPECT_EQ(weight({0.2f, 0, 0.05f}, {0.2f, 0, 1}), 0);      // bent the other way
+}
+
 TEST(IrradianceRecord, BringsTheNoiseOfItsReplicates) {
   HemisphereIrradiance light = even_light(2);
   light.by_replicate[3] = Rgb{1, 2, 4};

@@ -82,6 +82,11 @@ class IrradianceRecord {
   // Hessian says (a choice: measured errors are smaller).
   static constexpr float kThirdOrder = 0.1f;
 
+  // Choices, squared: radius over the distance from the tangent plane at which a record is used no more, and the same over the
+  // distance from its surface, as far as normals tell of that: nothing on a flat one, and where it bends its normals lead to the
+  // place (z = -n . d / 2, for it is a parabola). So it is not used on a surface behind its own, or before it.
+  static constexpr float kFlat = 16, kSame = 1024;
+
   std::array<float, 2> eigenvalues() const;
 
   Vec3f position_;
@@ -98,13 +103,13 @@ class IrradianceRecord {
 };
 
 inline IrradianceRecord::Use IrradianceRecord::use_at(Vec3f place, Vec3f normal, float per_angle_squared) const {
-  constexpr float kFlat = 16;  // squared: radius over the distance from the tangent plane at which a record is used no more
   const Frame frame(this->normal());
   const Vec3f d = frame.to_local(place - position_);
   const float across = metric_xx_ * d.x * d.x + 2 * metric_xy_ * d.x * d.y + metric_yy_ * d.y * d.y;
-  const float distance_squared = across + kFlat * (metric_xx_ + metric_yy_) * d.z * d.z;
-  if (!(distance_squared < 1)) return {};
   const Vec3f n = frame.to_local(normal);
+  const float off = std::min(std::fabs(d.z), std::fabs(d.z + (n.x * d.x + n.y * d.y) / 2));
+  const float distance_squared = across + (metric_xx_ + metric_yy_) * (kFlat * d.z * d.z + kSame * off * off);
+  if (!(distance_squared < 1)) return {};
   const float angle_squared = 2 * (1 - n.z) * per_angle_squared;
   if (!(angle_squared < 1)) return {};
   const auto linear = [&](float e, std::size_t c) {
