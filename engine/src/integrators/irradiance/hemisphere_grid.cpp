@@ -47,13 +47,17 @@ std::array<float, 3> parts(const std::array<float, 3>& distances) {
 HemisphereIrradiance HemisphereGrid::irradiance() const {
   HemisphereIrradiance sum;
   sum.least_distance = far_;
+  sum.nearest = {0, 0, far_};
   for (std::size_t i = 0; i < lights_.size(); ++i) {
     const GatheredLight& light = lights_[i];
     sum.by_replicate[replicate(i)] += light.radiance;
     const float per_cosine = 1 / std::max(light.direction.z, kLeastCosine);
     sum.turned_x += light.radiance * (light.direction.x * per_cosine);
     sum.turned_y += light.radiance * (light.direction.y * per_cosine);
-    sum.least_distance = std::min(sum.least_distance, light.distance);
+    if (light.distance < sum.least_distance) {
+      sum.least_distance = light.distance;
+      sum.nearest = light.direction * light.distance;
+    }
   }
   const float weight = kPi / static_cast<float>(lights_.size());
   for (Rgb& replicate : sum.by_replicate) {
@@ -64,9 +68,9 @@ HemisphereIrradiance HemisphereGrid::irradiance() const {
   sum.turned_y *= weight;
   double bright = 0, weights = 0;
   for (const GatheredLight& light : lights_) {
-    const double weight = nearness(light, sum.least_distance);
-    bright += weight * static_cast<double>(luminance(light.radiance));
-    weights += weight;
+    const double near = nearness(light, sum.least_distance);
+    bright += near * static_cast<double>(luminance(light.radiance));
+    weights += near;
   }
   sum.near_irradiance = static_cast<float>(M_PI * bright / weights);
   add_triangles(sum);

@@ -36,6 +36,7 @@ struct HemisphereIrradiance {
   // where they leave room, as beside a wall.
   TangentMatrix clearance;
   float least_distance = 0;   // of them, m
+  Vec3f nearest;              // of their points that were seen, from the place, in its frame, m
   float near_irradiance = 0;  // luminance that what is near would make if it were all around, W m^-2
 };
 

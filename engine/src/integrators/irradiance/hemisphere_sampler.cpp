@@ -97,22 +97,27 @@ std::unique_ptr<HemisphereSampler> make_hemisphere_sampler(const Scene& scene, c
   return std::make_unique<PathSampler<CausticPhotons>>(scene, CausticPhotons(scene, *caustics), queries);
 }
 
-float least_distance(const GatherPlace& place, RayQueries& queries) {
+std::optional<Vec3f> nearest_point(const GatherPlace& place, RayQueries& queries) {
   constexpr std::size_t kSide = 8;
   static_assert(kSide * kSide <= kMaxPaths);
+  std::array<Vec3f, kSide * kSide> directions;
   std::array<Ray, kSide * kSide> rays;
   std::array<Hit, kSide * kSide> hits;
   for (std::size_t i = 0; i < rays.size(); ++i) {
     const std::size_t column = i % kSide, row = i / kSide;
     const Vec2f u{(static_cast<float>(column) + 0.5f) / kSide, (static_cast<float>(row) + 0.5f) / kSide};
-    rays[i] = {place.origin, place.frame.to_world(square_to_cosine_hemisphere(u))};
+    directions[i] = square_to_cosine_hemisphere(u);
+    rays[i] = {place.origin, place.frame.to_world(directions[i])};
   }
   queries.intersect(rays, hits, false);
   float least = std::numeric_limits<float>::infinity();
-  for (const Hit& hit : hits) {
-    if (hit.shape != Hit::kNone) least = std::min(least, hit.t);
+  std::optional<Vec3f> nearest;
+  for (std::size_t i = 0; i < hits.size(); ++i) {
+    if (hits[i].shape == Hit::kNone || !(hits[i].t < least)) continue;
+    least = hits[i].t;
+    nearest = directions[i] * least;
   }
-  return least;
+  return nearest;
 }
 
 }  // namespace fluxfarm

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 
 #include "accel/ray_queries.h"
 #include "integrators/irradiance/hemisphere_grid.h"
@@ -35,7 +36,7 @@ class HemisphereSampler {
 // is left out, and what they bring to surfaces that it sees is not. They have a map for each replicate. Null: there are none.
 std::unique_ptr<HemisphereSampler> make_hemisphere_sampler(const Scene& scene, const CausticMaps* caustics, RayQueries& queries);
 
-// The distance of the nearest of the surfaces that a few rays from `place` meet, m; infinite if they meet none.
-float least_distance(const GatherPlace& place, RayQueries& queries);
+// The nearest of the points where a few rays from `place` meet surfaces, from the place, in its frame, m; empty if they meet none.
+std::optional<Vec3f> nearest_point(const GatherPlace& place, RayQueries& queries);
 
 }  // namespace fluxfarm

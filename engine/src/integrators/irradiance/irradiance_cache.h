@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "integrators/irradiance/bounds_tree.h"
 #include "integrators/irradiance/irradiance_record.h"
 
 namespace fluxfarm {
@@ -26,7 +27,7 @@ class IrradianceCache {
   IrradianceCache(std::vector<IrradianceRecord> records, float max_angle);
 
   std::span<const IrradianceRecord> records() const { return records_; }
-  std::size_t bytes() const { return records_.size() * sizeof(IrradianceRecord) + nodes_.size() * sizeof(Node); }
+  std::size_t bytes() const { return records_.size() * sizeof(IrradianceRecord) + tree_.bytes(); }
 
   struct Interpolated {
     Rgb irradiance;  // W m^-2, with the noise of the replicate's strata
@@ -37,21 +38,11 @@ class IrradianceCache {
   bool covers(const ReceivingPlace& place) const;
 
  private:
-  // The nodes of a subtree stand together, the node itself first, then its left part.
-  struct Node {
-    Bounds bounds;
-    std::uint32_t begin;  // of its records, if it is a leaf; else where its right part begins in nodes_
-    std::uint32_t count;  // of its records; 0: not a leaf
-  };
   // Weights of all records together below which they say too little: at the very rim of a single one (a choice).
   static constexpr float kLeastWeight = 0.05f;
 
-  void build(std::size_t begin, std::size_t end, const std::vector<Bounds>& bounds, std::vector<std::uint32_t>& order);
-  template <typename Visit>
-  void for_each_near(Vec3f place, const Visit& visit) const;
-
   std::vector<IrradianceRecord> records_;
-  std::vector<Node> nodes_;
+  BoundsTree tree_;  // its leaves hold records_
   float per_angle_squared_ = 1;
 };
 

@@ -3,9 +3,10 @@
 //
 // Parameters (MethodDescription): max_depth, rr_depth and hide_emitters as of the path tracer.
 //
-// Good for: rooms with diffuse walls. Poor for: detail finer than a few pixels, where no record is made and paths are traced.
-// Surfaces that are not diffuse are path traced. In a scene with glossy surfaces photons carry caustics, as in photon-progressive.
-// Participating media are not modelled.
+// Good for: rooms with diffuse walls. Poor for: detail finer than a few pixels, where no record is made and paths are traced; small
+// bright spots that light a room, which hardly a path of a record finds: error.noise and the bound of an error goal say so
+// (catalogue G7). Surfaces that are not diffuse are path traced. In a scene with glossy surfaces photons carry caustics, as in
+// photon-progressive. Participating media are not modelled.
 //
 // Each of a pixel's replicates takes the light of its own strata of each record's hemisphere: error.noise holds the records' noise.
 // error.bias is what the records' Hessians say that their gradients leave out.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "integrators/irradiance/clearance.h"
 #include "sampling/hash.h"
 
 namespace fluxfarm {
@@ -103,14 +104,22 @@ std::array<float, 2> IrradianceRecord::eigenvalues() const {
   return {middle - spread, middle + spread};
 }
 
-Bounds IrradianceRecord::bounds() const {
+bool IrradianceRecord::is_blocked_by(Vec3f point) const {
+  // Of the radius. Nearer its rim a record weighs little, and ordinary walls stand there (a choice).
+  constexpr float kWithin = 0.8f;
+  const Vec3f d = Frame(normal()).to_local(point - position_);
+  if (!is_above_surface(d)) return false;
+  return metric_xx_ * d.x * d.x + 2 * metric_xy_ * d.x * d.y + metric_yy_ * d.y * d.y + eigenvalues()[1] * d.z * d.z <
+         kWithin * kWithin;
+}
+
+Bounds IrradianceRecord::bounds(float normal_metric) const {
   // Of an ellipsoid x^T M x <= 1 the extent along a direction is the root of the inverse there.
   const Frame frame(normal());
   const float determinant = metric_xx_ * metric_yy_ - metric_xy_ * metric_xy_;
-  const float flat = 1 / (16 * (metric_xx_ + metric_yy_));
   const auto extent = [&](float s, float t, float n) {
     const float tangential = (metric_yy_ * s * s - 2 * metric_xy_ * s * t + metric_xx_ * t * t) / determinant;
-    return std::sqrt(std::max(tangential, 0.0f) + flat * n * n);
+    return std::sqrt(std::max(tangential, 0.0f) + n * n / normal_metric);
   };
   const Vec3f half{extent(frame.s.x, frame.t.x, frame.n.x), extent(frame.s.y, frame.t.y, frame.n.y),
                    extent(frame.s.z, frame.t.z, frame.n.z)};

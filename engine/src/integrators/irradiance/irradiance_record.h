@@ -62,7 +62,11 @@ class IrradianceRecord {
   // Semi-axes over the tangent plane, m.
   float larger_radius() const { return 1 / std::sqrt(eigenvalues()[0]); }
   float smaller_radius() const { return 1 / std::sqrt(eigenvalues()[1]); }
-  Bounds bounds() const;
+  Bounds bounds() const { return bounds(kFlat * (metric_xx_ + metric_yy_)); }
+  // Of the space over where the record is used: an ellipsoid that is as high as it is narrow.
+  Bounds space() const { return bounds(eigenvalues()[1]); }
+  // Whether a point of another surface (world, m) stands well within that space.
+  bool is_blocked_by(Vec3f point) const;
 
   // What the record says of a place.
   struct Use {
@@ -88,6 +92,8 @@ class IrradianceRecord {
   static constexpr float kFlat = 16, kSame = 1024;
 
   std::array<float, 2> eigenvalues() const;
+  // `normal_metric`: as metric_, along the normal.
+  Bounds bounds(float normal_metric) const;
 
   Vec3f position_;
   std::uint32_t normal_ = 0;  // octahedral

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "integrators/irradiance/cached_irradiance.h"
+#include "integrators/irradiance/clearance.h"
 #include "integrators/irradiance/hemisphere_sampler.h"
 #include "sampling/hash.h"
 #include "support/error.h"
@@ -59,7 +60,7 @@ class OvertureBuilder {
   void refine(int step) {
     const FilmDescription& film = scene_.film();
     const int columns = (film.width + step - 1) / step, rows = (film.height + step - 1) / step;
-    std::vector<std::optional<GatherPlace>> found(static_cast<std::size_t>(columns) * rows);
+    std::vector<Look> found(static_cast<std::size_t>(columns) * rows);
     parallel_for((found.size() + kPixelsAtOnce - 1) / kPixelsAtOnce, threads_, [&](std::size_t group, int thread) {
       check_cancelled();
       prepare_render_thread();
@@ -70,14 +71,13 @@ class OvertureBuilder {
         const auto mask = static_cast<std::uint64_t>(step - 1);
         const int x = std::min(column * step + static_cast<int>(bits & mask), film.width - 1),
                   y = std::min(row * step + static_cast<int>(bits >> 32 & mask), film.height - 1);
-        found[i] = uncovered_place(x, y, static_cast<std::uint32_t>(step), workers_[static_cast<std::size_t>(thread)]->queries);
+        found[i] = look(x, y, static_cast<std::uint32_t>(step), workers_[static_cast<std::size_t>(thread)]->queries);
       }
     });
     std::vector<GatherPlace> places;
-    for (const std::optional<GatherPlace>& place : found) {
-      if (place) places.push_back(*place);
+    for (const Look& look : found) {
+      if (look.uncovered) places.push_back(*look.uncovered);
     }
-    if (places.empty()) return;
     std::vector<Made> made(places.size());
     const int first = static_cast<int>(tried_);
     parallel_for(places.size(), threads_, [&](std::size_t i, int thread) {
@@ -86,13 +86,63 @@ class OvertureBuilder {
       made[i] = make(places[i], first + static_cast<int>(i), *workers_[static_cast<std::size_t>(thread)]);
     });
     tried_ += places.size();
-    for (const Made& m : made) (m.kept ? records_ : refused_records_).push_back(m.record);
+    for (std::size_t i = 0; i < made.size(); ++i) {
+      if (made[i].light) {
+        kept_.push_back({places[i], *made[i].light});
+        records_.push_back(record(kept_.back()));
+      } else {
+        refused_records_.push_back(refused_record(places[i]));
+      }
+      if (made[i].nearest) near_points_.push_back(places[i].position + places[i].frame.to_world(*made[i].nearest));
+    }
+    // Seen by gathers at any step, and by this one.
+    std::vector<Vec3f> points = near_points_;
+    for (const Look& look : found) {
+      if (look.surface) points.push_back(*look.surface);
+    }
+    keep_clear_of_all(points);
     cache_ = IrradianceCache(records_, quality_.max_angle);
     refused_ = IrradianceCache(refused_records_, quality_.max_angle);
   }
 
-  // Where the path through a pixel comes to a surface that takes irradiance, if no record covers that and none was refused there.
-  std::optional<GatherPlace> uncovered_place(int x, int y, std::uint32_t step, RayQueries& queries) const {
+  // A record, and a point before it.
+  struct Blocked {
+    std::uint32_t record;
+    Vec3f point;
+  };
+
+  // Shrinks records where one of these points (of surfaces, world, m) stands before them that their own rays missed.
+  void keep_clear_of_all(std::span<const Vec3f> points) {
+    std::vector<Bounds> spaces;
+    for (const IrradianceRecord& record : records_) spaces.push_back(record.space());
+    const BoundsTree tree(spaces);
+    std::vector<std::vector<Blocked>> all((points.size() + kPixelsAtOnce - 1) / kPixelsAtOnce);
+    parallel_for(all.size(), threads_, [&](std::size_t group, int) {
+      for (std::size_t p = group * kPixelsAtOnce; p < std::min(points.size(), (group + 1) * kPixelsAtOnce); ++p) {
+        tree.for_each_near(points[p], [&](std::uint32_t i) {
+          if (records_[tree.order()[i]].is_blocked_by(points[p])) all[group].push_back({tree.order()[i], points[p]});
+          return true;
+        });
+      }
+    });
+    for (const std::vector<Blocked>& group : all) {
+      for (const auto& [index, point] : group) {
+        if (!records_[index].is_blocked_by(point)) continue;
+        Kept& kept = kept_[index];
+        keep_clear_of(kept.place.frame.to_local(point - kept.place.position), kept.light.clearance);
+        records_[index] = record(kept);
+      }
+    }
+  }
+
+  // What the path through a pixel meets.
+  struct Look {
+    std::optional<Vec3f> surface;  // where it ends, world, m
+    // The same, if that takes irradiance, no record covers it and none was refused there.
+    std::optional<GatherPlace> uncovered;
+  };
+  Look look(int x, int y, std::uint32_t step, RayQueries& queries) const {
+    Look look;
     const CameraSample sample{x, y, 0};
     SamplerBatch sampler;
     std::array<Ray, kMaxPaths> rays;
@@ -104,47 +154,65 @@ class OvertureBuilder {
     for (int depth = 0; depth < std::min(kMaxSurfaces, max_depth - 1); ++depth) {
       Hit hit;
       queries.intersect({&ray, 1}, {&hit, 1}, false);
-      if (hit.shape == Hit::kNone) return std::nullopt;
+      if (hit.shape == Hit::kNone) return look;
       BsdfSpace space;
       const PathVertex vertex(scene_, ray, hit, space);
       length += hit.t;
+      look.surface = vertex.point.position;
       if (takes_irradiance(*vertex.surface)) {
-        if (!(vertex.wo.z > 0) || vertex.bsdf->albedo(vertex.wo).is_black()) return std::nullopt;
+        if (!(vertex.wo.z > 0) || vertex.bsdf->albedo(vertex.wo).is_black()) return look;
         const ReceivingPlace receiving = receiving_place(vertex, max_depth - depth);
-        if (cache_.covers(receiving) || refused_.covers(receiving)) return std::nullopt;
-        return GatherPlace{vertex.point.position, vertex.frame, vertex.origin_towards(vertex.frame.n), depth,
-                           receiving.room,        length};
+        if (cache_.covers(receiving) || refused_.covers(receiving)) return look;
+        look.uncovered =
+            GatherPlace{vertex.point.position, vertex.frame, vertex.origin_towards(vertex.frame.n), depth, receiving.room, length};
+        return look;
       }
       sampler.draw_2d(dimension_of(depth, kDirection), u);
       const std::optional<BsdfSample> scatter =
           vertex.bsdf->sample(vertex.wo, sampler.draw_1d(dimension_of(depth, kLobe), 0), u[0]);
-      if (!scatter || !scatter->delta) return std::nullopt;
+      if (!scatter || !scatter->delta) return look;
       const Vec3f direction = vertex.frame.to_world(scatter->wi);
       ray = {vertex.origin_towards(direction), direction};
     }
-    return std::nullopt;
+    return look;
   }
 
+  // A record with what it was made of.
+  struct Kept {
+    GatherPlace place;
+    HemisphereIrradiance light;
+  };
   struct Made {
-    IrradianceRecord record;
-    bool kept = false;
+    std::optional<HemisphereIrradiance> light;  // empty: refused
+    std::optional<Vec3f> nearest;               // of what was seen, in the frame of the place, m
   };
   Made make(const GatherPlace& place, int index, Worker& worker) const {
-    const float footprint = scene_.camera().pixel_angle() * place.length, least = kLeastRadius * footprint;
-    const RecordLimits limits{quality_.tolerance, kLeastIrradiance, kLargestRadius * scene_.radius()};
-    const RecordLimits refused{quality_.tolerance, kLeastIrradiance, kRefusedRadius * footprint};
-    const float far = 1e3f * scene_.radius();
-    const auto refuse = [&] {
-      HemisphereIrradiance flat;
-      flat.irradiance = Rgb{1};
-      return Made{IrradianceRecord(place.position, place.frame, place.room, flat, refused), false};
-    };
-    if (least_distance(place, worker.queries) < kLeastRoom * footprint) return refuse();
-    HemisphereGrid grid(quality_.strata, far);
+    const float footprint = footprint_of(place);
+    const std::optional<Vec3f> nearest = nearest_point(place, worker.queries);
+    if (nearest && length(*nearest) < kLeastRoom * footprint) return {{}, nearest};
+    HemisphereGrid grid(quality_.strata, 1e3f * scene_.radius());
     worker.sampler->gather(place, seed_, index, grid);
-    const IrradianceRecord record(place.position, place.frame, place.room, grid.irradiance(), limits);
-    if (!(record.larger_radius() * record.smaller_radius() >= least * least)) return refuse();
-    return {record, true};
+    const Kept kept{place, grid.irradiance()};
+    const IrradianceRecord made = record(kept);
+    const float least = kLeastRadius * footprint;
+    if (!(made.larger_radius() * made.smaller_radius() >= least * least)) return {{}, kept.light.nearest};
+    return {kept.light, kept.light.nearest};
+  }
+
+  // Side of what a pixel sees there, m.
+  float footprint_of(const GatherPlace& place) const { return scene_.camera().pixel_angle() * place.length; }
+
+  IrradianceRecord record(const Kept& kept) const {
+    const RecordLimits limits{quality_.tolerance, kLeastIrradiance, kLargestRadius * scene_.radius()};
+    return {kept.place.position, kept.place.frame, kept.place.room, kept.light, limits};
+  }
+
+  // Stands for a place where none is kept.
+  IrradianceRecord refused_record(const GatherPlace& place) const {
+    HemisphereIrradiance flat;
+    flat.irradiance = Rgb{1};
+    return {place.position, place.frame, place.room, flat,
+            RecordLimits{quality_.tolerance, kLeastIrradiance, kRefusedRadius * footprint_of(place)}};
   }
 
   const Scene& scene_;
@@ -153,6 +221,8 @@ class OvertureBuilder {
   int threads_;
   const std::atomic<bool>& cancelled_;
   std::vector<std::unique_ptr<Worker>> workers_;
+  std::vector<Kept> kept_;
+  std::vector<Vec3f> near_points_;  // world, m
   std::vector<IrradianceRecord> records_, refused_records_;
   IrradianceCache cache_, refused_;
   std::size_t tried_ = 0;

@@ -3,6 +3,9 @@
 //
 // From coarse to fine over the pixels: at each step the cache as it is decides which pixels lack a record, these are made side by
 // side, and put in by the order of their pixels. So neither threads nor tiles change a bit, and no tile adds a record.
+//
+// Points of surfaces that pixels and records see tell each record what stands near it that its own rays missed (clearance.h): it
+// shrinks, and the next step finds what it no longer covers.
 #pragma once
 
 #include <atomic>
