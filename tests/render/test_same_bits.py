@@ -71,8 +71,8 @@ def test_error_goal_gives_the_same_bits_whoever_renders_it(farms: list[Farm], tm
     assert same_bits(alone, farm.layers(job_id))
 
 
-@pytest.mark.parametrize("method", ["photon", "photon-progressive"])
-def test_photons_give_the_same_bits_whoever_shoots_them(farms: list[Farm], tmp_path: Path, method: str) -> None:
+@pytest.mark.parametrize("method", ["photon", "photon-progressive", "irradiance-cache"])
+def test_prepared_passes_give_the_same_bits_whoever_makes_them(farms: list[Farm], tmp_path: Path, method: str) -> None:
     scene = ROOT / "scenes" / "cornell-glass" / "scene.xml"
     options = ("--size", f"{SIDE}x{SIDE}", "--spp", SPP, "--seed", SEED, "--integrator", method)
     alone = render_alone(scene, tmp_path / "alone.exr", *options)
