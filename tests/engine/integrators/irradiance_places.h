@@ -72,11 +72,11 @@ inline double direct_irradiance(const Scene& scene, const GatherPlace& place) {
 inline std::vector<Gathered> gathered(const Scene& scene, const std::vector<GatherPlace>& places, int strata) {
   constexpr std::uint64_t kSeed = 0x9e3779b97f4a7c15;
   RayQueries queries(scene.accelerator());
-  HemisphereSampler sampler(scene, queries);
+  const auto sampler = make_hemisphere_sampler(scene, nullptr, queries);
   HemisphereGrid grid(strata, 1e3f * scene.radius());
   std::vector<Gathered> all;
   for (std::size_t i = 0; i < places.size(); ++i) {
-    sampler.gather(places[i], kSeed, static_cast<int>(i), grid);
+    sampler->gather(places[i], kSeed, static_cast<int>(i), grid);
     std::array<double, kReplicates> parts{};
     for (std::size_t s = 0; s < grid.size(); ++s) {
       parts[grid.replicate(s)] +=
@@ -112,7 +112,7 @@ using MakeCache = std::function<IrradianceCache(const Scene& scene, std::uint64_
 
 // At the quality of the 64 samples that a picture has by default.
 inline IrradianceCache guarded_cache(const Scene& scene, std::uint64_t seed) {
-  return make_overture(scene, seed, quality_of(cache_level({16, 64})), 1, kNever).cache;
+  return make_overture(scene, nullptr, seed, quality_of(cache_level({16, 64})), 1, kNever).cache;
 }
 
 // A cache that covers the film, too, with records of what `strip` leaves of what is known of a place, and none refused.
@@ -120,14 +120,14 @@ inline MakeCache unguarded_cache(std::function<void(HemisphereIrradiance&)> stri
   return [strip](const Scene& scene, std::uint64_t seed) {
     const CacheQuality quality = quality_of(cache_level({16, 64}));
     RayQueries queries(scene.accelerator());
-    HemisphereSampler sampler(scene, queries);
+    const auto sampler = make_hemisphere_sampler(scene, nullptr, queries);
     HemisphereGrid grid(quality.strata, 1e3f * scene.radius());
     std::vector<IrradianceRecord> records;
     IrradianceCache cache;
     for (int side = 1; side <= scene.film().width; side *= 2) {
       for (const GatherPlace& place : seen_places(scene, side)) {
         if (cache.covers({place.position, place.frame.n, place.room})) continue;
-        sampler.gather(place, seed, static_cast<int>(records.size()), grid);
+        sampler->gather(place, seed, static_cast<int>(records.size()), grid);
         HemisphereIrradiance light = grid.irradiance();
         strip(light);
         records.emplace_back(place.position, place.frame, place.room, light,
