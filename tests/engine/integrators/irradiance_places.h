@@ -112,13 +112,13 @@ using MakeCache = std::function<IrradianceCache(const Scene& scene, std::uint64_
 
 // At the quality of the 64 samples that a picture has by default.
 inline IrradianceCache guarded_cache(const Scene& scene, std::uint64_t seed) {
-  return make_overture(scene, nullptr, seed, quality_of(cache_level({16, 64})), 1, kNever).cache;
+  return make_overture(scene, nullptr, seed, quality_of(cache_level({16, 17})), 1, kNever).cache;
 }
 
 // A cache that covers the film, too, with records of what `strip` leaves of what is known of a place, and none refused.
 inline MakeCache unguarded_cache(std::function<void(HemisphereIrradiance&)> strip) {
   return [strip](const Scene& scene, std::uint64_t seed) {
-    const CacheQuality quality = quality_of(cache_level({16, 64}));
+    const CacheQuality quality = quality_of(cache_level({16, 17}));
     RayQueries queries(scene.accelerator());
     const auto sampler = make_hemisphere_sampler(scene, nullptr, queries);
     HemisphereGrid grid(quality.strata, 1e3f * scene.radius());

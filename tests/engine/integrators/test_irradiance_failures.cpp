@@ -29,7 +29,7 @@ using testing::unguarded_cache;
 constexpr double kRms = 0.01, kLargest = 0.05;
 constexpr int kSide = 16;    // places along a side of the film
 constexpr int kStrata = 80;  // along a side of a hemisphere of paths
-constexpr std::uint64_t kSeeds = 24, kTwinSeeds = 6;
+constexpr std::uint64_t kSeeds = 24, kTwinSeeds = 20;
 
 SceneDescription seen(SceneBuilder builder, const std::array<double, 3>& from, const std::array<double, 3>& at, float fov) {
   builder.look(from, at).max_depth(5);
@@ -107,7 +107,7 @@ TEST(IrradianceFailures, SmallGapBetweenPolygons) {
   expect_guarded(seen(builder, {1.2, 1.5, 1}, {0, 0.2, -0.5}, 60), no_clearance);
 }
 
-TEST(IrradianceFailures, ThinWall) { expect_guarded(seen(wall(0.005, 0, 1), {0, 2.3, 1.9}, {0, 0.3, -0.4}, 70), no_clearance); }
+TEST(IrradianceFailures, ThinWall) { expect_guarded(seen(wall(0.005, 0, 1), {0, 2.3, 1.9}, {0, 0.3, -0.4}, 70), no_guard); }
 
 // So low that most rays pass over it.
 TEST(IrradianceFailures, ThinLowWall) { expect_guarded(seen(wall(0.01, 0, 0.1), {0, 2.3, 1.9}, {0, 0, 0.2}, 50), no_clearance); }
@@ -176,7 +176,7 @@ TEST(IrradianceFailures, FewRecords) {
   double covered = 1;
   for (const std::size_t part : {1u, 2u, 4u}) {
     const auto few = [part](const Scene& s, std::uint64_t seed) {
-      const CacheQuality quality = quality_of(cache_level({16, 64}));
+      const CacheQuality quality = quality_of(cache_level({16, 17}));
       const IrradianceCache all = guarded_cache(s, seed);
       std::vector<IrradianceRecord> some;
       for (std::size_t i = 0; i < all.records().size(); i += part) some.push_back(all.records()[i]);

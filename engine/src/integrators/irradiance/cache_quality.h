@@ -25,15 +25,16 @@ inline constexpr std::uint32_t kFirstCacheLevel = 16;  // samples in it
 // The samples of the level to which those belong.
 constexpr SampleRange cache_level(SampleRange samples) {
   SampleRange level{0, kFirstCacheLevel};
-  while (samples.begin >= level.end) level = {level.end, 4 * level.end};
+  while (samples.begin >= level.end) level = {level.end, 8 * level.end};
   return level;
 }
 
 inline CacheQuality quality_of(SampleRange level) {
   constexpr float kFirstPaths = 256, kFirstTolerance = 0.15f;  // choices
-  const float root = std::sqrt(static_cast<float>(level.end) / static_cast<float>(kFirstCacheLevel));
-  const int replicate_side = static_cast<int>(std::ceil(std::sqrt(kFirstPaths * root) / static_cast<float>(kReplicates)));
-  const float tolerance = kFirstTolerance / std::sqrt(root);
+  // 1, 2, 4, ... for one level after the other.
+  const float growth = std::pow(static_cast<float>(level.end) / static_cast<float>(kFirstCacheLevel), 1.0f / 3);
+  const int replicate_side = static_cast<int>(std::ceil(std::sqrt(kFirstPaths * growth) / static_cast<float>(kReplicates)));
+  const float tolerance = kFirstTolerance / growth;
   // A turn by t brings light of the horizon in and out: t^2 / 4 of all, if it is even.
   return {.strata = static_cast<int>(kReplicates) * replicate_side, .tolerance = tolerance, .max_angle = 2 * std::sqrt(tolerance)};
 }
