@@ -153,13 +153,16 @@ TEST(DiskInSight, TellsABoxFromABall) {
   expect_truth(inverse_parts(sunk.description(), {1e-4f, 0, 0})[0], 2, 1, "beside a box that is sunk in");
   SceneBuilder ball = plate();
   ball.shape(SphereDescription{{0, 0.3f, 0}, 0.3f}, ball.diffuse(0));
-  for (const float x : {0.02f, 0.05f, 0.1f, 0.15f}) EXPECT_NEAR(inverse_parts(ball.description(), {x, 0, 0})[0].mean, 1, 0.002) << x;
+  for (const float x : {0.02f, 0.05f, 0.1f, 0.15f})
+    EXPECT_NEAR(inverse_parts(ball.description(), {x, 0, 0})[0].mean, 1, 0.002) << x;
 }
 
 // One photon in all stands for each part of them, in the mean and in each channel.
 TEST(DiskInSight, OnePhotonStandsForAll) {
-  const std::vector<ScatteredPhotons::Part> parts{{Rgb{1, 0, 0}, Rgb{1, 0, 0}, true}, {Rgb{0, 0, 0}, {}, false},
-                                                  {Rgb{1, 2, 4}, {}, false}, {Rgb{0.1f, 0.1f, 0.1f}, Rgb{0.2f, 0.2f, 0.2f}, false}};
+  const std::vector<ScatteredPhotons::Part> parts{{Rgb{1, 0, 0}, Rgb{1, 0, 0}, true},
+                                                  {Rgb{0, 0, 0}, {}, false},
+                                                  {Rgb{1, 2, 4}, {}, false},
+                                                  {Rgb{0.1f, 0.1f, 0.1f}, Rgb{0.2f, 0.2f, 0.2f}, false}};
   constexpr int kNumbers = 100000;
   std::array<Rgb, 4> wide, narrow;
   std::array<int, 4> chosen{};
@@ -203,8 +206,9 @@ TEST(DiskInSight, Fails44_ThinWallLeak) {
 TEST(DiskInSight, Fails44_PerpendicularCrease) {
   SceneBuilder builder;
   builder.shape(RectangleDescription{Transform::translate(1, 0, 0) * Transform::rotate(1, 0, 0, -90)}, builder.diffuse(0));
-  builder.shape(RectangleDescription{Transform::translate(0, 0.7, 0) * Transform::rotate(0, 1, 0, 90) * Transform::scale(1, 0.7, 1)},
-                builder.diffuse(0));
+  builder.shape(
+      RectangleDescription{Transform::translate(0, 0.7, 0) * Transform::rotate(0, 1, 0, 90) * Transform::scale(1, 0.7, 1)},
+      builder.diffuse(0));
   builder.emitter(DirectionalEmitterDescription{normalize(Vec3f{-1, -1, 0}), Rgb{1}});
   const double truth = std::numbers::sqrt2 / 2;
   for (const float x : {0.005f, 0.25f, 0.54f}) {

@@ -17,7 +17,8 @@ bool DiskInSight::meets_surface(Vec2f place) const {
       return surface.has_continuous_lobe && sees(point.position, point.geometric_normal);  // others keep no photons
     }
     if (!hangs_over(point.geometric_normal)) return false;
-    down.origin = offset_point(point.position, point.geometric_normal * std::copysign(1.0f, -dot(point.geometric_normal, frame_.n)));
+    down.origin =
+        offset_point(point.position, point.geometric_normal * std::copysign(1.0f, -dot(point.geometric_normal, frame_.n)));
     down.t_max -= hit.t;
   }
   return false;
