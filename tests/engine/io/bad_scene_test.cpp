@@ -54,7 +54,8 @@ TEST(BadScene, UnknownPluginsAreErrors) {
             "scene.xml:2: unknown plugin: volume \"gridvolume\"; no volume is supported yet");
   EXPECT_EQ(
       error_of([&] { folder.read_xml("<integrator type=\"bdpt\"/>"); }),
-      "scene.xml:2: unknown plugin: integrator \"bdpt\", expected one of: path, photon, photon-progressive, volpath, volpathmis");
+      "scene.xml:2: unknown plugin: integrator \"bdpt\", expected one of: path, photon, photon-progressive, irradiance-cache, "
+      "volpath, volpathmis");
   EXPECT_EQ(error_of([&] { folder.read_xml("<shape type=\"diffuse\"/>"); }).find("scene.xml:2: unknown plugin: shape \"diffuse\""),
             0u);
   EXPECT_EQ(error_of([&] {
