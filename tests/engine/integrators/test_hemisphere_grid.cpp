@@ -180,7 +180,7 @@ Seen room_with_wall(Vec3f origin, Vec3f direction) {
 
 TEST(HemisphereGrid, ClearanceIsLongBesideAWall) {
   const HemisphereIrradiance e = look(room_with_wall, {}, 32).irradiance();
-  EXPECT_NEAR(e.least_distance, 0.5f, 0.05f);
+  EXPECT_NEAR(length(e.nearest), 0.5f, 0.05f);
   const double across = 1 / std::sqrt(e.clearance.xx), along = 1 / std::sqrt(e.clearance.yy);
   EXPECT_LT(across, 0.5);
   EXPECT_GT(across, 0.35);

@@ -14,7 +14,6 @@ HemisphereIrradiance even_light(float irradiance) {
   HemisphereIrradiance light;
   light.irradiance = Rgb{irradiance};
   light.by_replicate.fill(Rgb{irradiance});
-  light.least_distance = 10;
   return light;
 }
 

@@ -9,7 +9,7 @@
 //   gradient_i  = -a_i integral(1 / v^2) + 2 (n . c) integral(v_i / v^4)
 //   hessian_ij  = -2 integral((a_i v_j + a_j v_i) / v^4) + 2 (n . c) integral(4 v_i v_j / v^6 - delta_ij / v^4).
 // A scene of which only the radiances and distances of a grid of directions are known is taken for a mesh between them: its edges
-// hold what comes into sight and what goes out of sight as the receiver moves.                       [Schwarzhaupt12, section 3]
+// hold what comes into sight and what goes out of sight as the receiver moves. [Schwarzhaupt12]
 //
 // [Schwarzhaupt12] J. Schwarzhaupt, H. W. Jensen, W. Jarosz, "Practical Hessian-Based Error Control for Irradiance Caching",
 // ACM TOG 31(6), 2012. The formulas here are our own.

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 
 namespace fluxfarm {
 namespace {
@@ -46,7 +45,7 @@ std::array<float, 3> parts(const std::array<float, 3>& distances) {
 
 HemisphereIrradiance HemisphereGrid::irradiance() const {
   HemisphereIrradiance sum;
-  sum.least_distance = far_;
+  float least_distance = far_;
   sum.nearest = {0, 0, far_};
   for (std::size_t i = 0; i < lights_.size(); ++i) {
     const GatheredLight& light = lights_[i];
@@ -54,8 +53,8 @@ HemisphereIrradiance HemisphereGrid::irradiance() const {
     const float per_cosine = 1 / std::max(light.direction.z, kLeastCosine);
     sum.turned_x += light.radiance * (light.direction.x * per_cosine);
     sum.turned_y += light.radiance * (light.direction.y * per_cosine);
-    if (light.distance < sum.least_distance) {
-      sum.least_distance = light.distance;
+    if (light.distance < least_distance) {
+      least_distance = light.distance;
       sum.nearest = light.direction * light.distance;
     }
   }
@@ -68,22 +67,22 @@ HemisphereIrradiance HemisphereGrid::irradiance() const {
   sum.turned_y *= weight;
   double bright = 0, weights = 0;
   for (const GatheredLight& light : lights_) {
-    const double near = nearness(light, sum.least_distance);
+    const double near = nearness(light, least_distance);
     bright += near * static_cast<double>(luminance(light.radiance));
     weights += near;
   }
   sum.near_irradiance = static_cast<float>(M_PI * bright / weights);
   add_triangles(sum);
-  sum.clearance = clearance(sum.least_distance);
+  sum.clearance = clearance(least_distance);
   return sum;
 }
 
-// The short axis points to where what is near lies; what lies to the sides bounds the long one.
 double HemisphereGrid::nearness(const GatheredLight& light, float least_distance) const {
   const auto closeness = static_cast<double>(least_distance / std::min(light.distance, far_));
   return closeness * closeness * closeness * closeness;
 }
 
+// The short axis points to where what is near lies; what lies to the sides bounds the long one.
 TangentMatrix HemisphereGrid::clearance(float least_distance) const {
   constexpr double kSeen = 0.8;  // the nearest point of a surface over the nearest one that was seen, at least (a choice)
   const double across = kSeen * static_cast<double>(least_distance);

@@ -26,7 +26,7 @@ struct HemisphereIrradiance {
   Rgb irradiance;                             // W m^-2
   std::array<Rgb, kReplicates> by_replicate;  // the same by the strata of each replicate alone
   // The tangential part of the integral of radiance times direction, W m^-2: irradiance on a plane that is turned a little is its
-  // scalar product with that plane's normal, but for light near the horizon. It is the rotational gradient [WardHeckbert92, eq. 3].
+  // scalar product with that plane's normal, but for light near the horizon. It is the rotational gradient [WardHeckbert92].
   Rgb turned_x, turned_y;
   // Over the place in the tangent plane, W m^-3: as much of it as is likely to be more than noise.
   Rgb gradient_x, gradient_y;
@@ -35,7 +35,6 @@ struct HemisphereIrradiance {
   // An ellipse of the tangent plane, d^T clearance d < 1, m^-2: the space around it has none of the surfaces that were seen. Long
   // where they leave room, as beside a wall.
   TangentMatrix clearance;
-  float least_distance = 0;   // of them, m
   Vec3f nearest;              // of their points that were seen, from the place, in its frame, m
   float near_irradiance = 0;  // luminance that what is near would make if it were all around, W m^-2
 };
@@ -46,7 +45,6 @@ class HemisphereGrid {
   // other.
   HemisphereGrid(int strata, float far) : strata_(strata), far_(far), lights_(static_cast<std::size_t>(strata) * strata) {}
 
-  int strata() const { return strata_; }
   std::size_t size() const { return lights_.size(); }
   // Stratum `index` by rows: where it lies in the unit square, u in [0,1)^2 moves in it.
   Vec2f place(std::size_t index, Vec2f u) const {
@@ -65,7 +63,7 @@ class HemisphereGrid {
 
  private:
   void add_triangles(HemisphereIrradiance& sum) const;
-  // How much a light says of what is near.
+  // How much a light says of what is near, at `least_distance` (m).
   double nearness(const GatheredLight& light, float least_distance) const;
   TangentMatrix clearance(float least_distance) const;
 

@@ -28,7 +28,6 @@ class FirstDistance : public Photons {
     Photons::scatter(state.photons, {.wi = {0, 0, 1}, .weight = Rgb{1}, .pdf = kInvPi});
     return state;
   }
-  State start(const CameraSample& sample) const { return {Photons::start(sample), nullptr}; }
   void arrive(State& state, float distance) const {
     if (state.distance != nullptr) *state.distance = distance;
     state.distance = nullptr;

@@ -9,7 +9,7 @@
 // photon-progressive. Participating media are not modelled.
 //
 // Each of a pixel's replicates takes the light of its own strata of each record's hemisphere: error.noise holds the records' noise.
-// error.bias is what the records' Hessians say that their gradients leave out.
+// error.bias is what the records allow for beside it: their Hessians, what is near, and their gradients' noise.
 //
 // [Ward88] G. Ward, F. Rubinstein, R. Clear, "A Ray Tracing Solution for Diffuse Interreflection", SIGGRAPH 1988.
 #pragma once

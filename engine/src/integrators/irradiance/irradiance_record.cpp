@@ -44,8 +44,8 @@ TangentMatrix turned(const TangentMatrix& m, double c, double s) {
           m.xx * s * s + 2 * m.xy * c * s + m.yy * c * c};
 }
 
-std::array<HalfFloat, 3> packed(const TangentMatrix& m) {
-  return {HalfFloat(static_cast<float>(m.xx)), HalfFloat(static_cast<float>(m.xy)), HalfFloat(static_cast<float>(m.yy))};
+std::array<Bfloat16, 3> packed(const TangentMatrix& m) {
+  return {Bfloat16(static_cast<float>(m.xx)), Bfloat16(static_cast<float>(m.xy)), Bfloat16(static_cast<float>(m.yy))};
 }
 
 float ratio(float part, float whole) { return whole > 0 ? part / whole : 1.0f; }
@@ -61,10 +61,10 @@ IrradianceRecord::IrradianceRecord(Vec3f position, const Frame& frame, int room,
   // What was found in `frame` goes into the one that use_at() makes of the packed normal.
   const Frame own(normal());
   const float c = dot(own.s, frame.s), s = dot(own.t, frame.s);
-  const auto turn = [&](Rgb x, Rgb y, std::array<HalfFloat, 3>& own_x, std::array<HalfFloat, 3>& own_y) {
+  const auto turn = [&](Rgb x, Rgb y, std::array<Bfloat16, 3>& own_x, std::array<Bfloat16, 3>& own_y) {
     const Rgb a = x * c - y * s, b = x * s + y * c;
-    own_x = {HalfFloat(a.r), HalfFloat(a.g), HalfFloat(a.b)};
-    own_y = {HalfFloat(b.r), HalfFloat(b.g), HalfFloat(b.b)};
+    own_x = {Bfloat16(a.r), Bfloat16(a.g), Bfloat16(a.b)};
+    own_y = {Bfloat16(b.r), Bfloat16(b.g), Bfloat16(b.b)};
   };
   turn(light.turned_x, light.turned_y, turned_x_, turned_y_);
   turn(light.gradient_x, light.gradient_y, gradient_x_, gradient_y_);
@@ -91,7 +91,7 @@ IrradianceRecord::IrradianceRecord(Vec3f position, const Frame& frame, int room,
   metric_yy_ = static_cast<float>(metric.yy);
   hessian_ = packed(turned(light.hessian, static_cast<double>(c), static_cast<double>(s)));
   third_order_ = packed(turned(third_order, static_cast<double>(c), static_cast<double>(s)));
-  gradient_noise_ = HalfFloat(light.gradient_noise);
+  gradient_noise_ = Bfloat16(light.gradient_noise);
   for (std::uint32_t i = 0; i < kReplicates; ++i) {
     const Rgb part = light.by_replicate[i], whole = light.irradiance;
     const float dither = static_cast<float>(mix_bits_32(normal_ + i) >> 8) * 0x1p-24f;

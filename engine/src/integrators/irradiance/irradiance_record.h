@@ -1,9 +1,7 @@
 // Irradiance at one place, and how it changes around it.
 //
-// [WardHeckbert92]  G. Ward, P. Heckbert, "Irradiance Gradients", EGWR 1992.
-// [Schwarzhaupt12]  J. Schwarzhaupt, H. W. Jensen, W. Jarosz, "Practical Hessian-Based Error Control for Irradiance Caching", ACM
-// TOG
-//                   31(6), 2012.
+// [Schwarzhaupt12] J. Schwarzhaupt, H. W. Jensen, W. Jarosz, "Practical Hessian-Based Error Control for Irradiance Caching", ACM
+// TOG 31(6), 2012.
 #pragma once
 
 #include <array>
@@ -20,11 +18,11 @@
 
 namespace fluxfarm {
 
-// The upper half of a float: 8 bits of precision, for numbers that are noisy anyway.
-class HalfFloat {
+// The upper half of a float32, rounded: 8 bits of precision, for numbers that are noisy anyway.
+class Bfloat16 {
  public:
-  HalfFloat() = default;
-  explicit HalfFloat(float value) : bits_(static_cast<std::uint16_t>((std::bit_cast<std::uint32_t>(value) + 0x7fff) >> 16)) {}
+  Bfloat16() = default;
+  explicit Bfloat16(float value) : bits_(static_cast<std::uint16_t>((std::bit_cast<std::uint32_t>(value) + 0x7fff) >> 16)) {}
   float value() const { return std::bit_cast<float>(static_cast<std::uint32_t>(bits_) << 16); }
 
  private:
@@ -48,9 +46,8 @@ class IrradianceRecord {
   // `frame` at `position` (world, m), z along the shading normal. `room`: of surfaces that light may have met, with this one, at
   // most kMostRoom. A record is used in an ellipse of the tangent plane that is smaller than each of several:
   // - where half of the Hessian times the distance squared is the tolerance [Schwarzhaupt12, there with the error over the area];
-  // - the Hessian tells of the record's place alone: how it changes around that is not known, but goes with the cube of the
-  // distance
-  //   over the one to what is near, and there is a distance at which that is the tolerance;
+  // - the Hessian tells of the record's place alone: how it changes around that is not known, but goes with the cube of
+  //   the distance over the one to what is near, and there is a distance at which that is the tolerance;
   // - where the gradient would have doubled the irradiance, or left none of it;
   // - max_radius.
   IrradianceRecord(Vec3f position, const Frame& frame, int room, const HemisphereIrradiance& light, const RecordLimits& limits);
@@ -100,10 +97,10 @@ class IrradianceRecord {
   Rgb irradiance_;
   // One over the squares of the radii, as a matrix over the tangent plane, m^-2.
   float metric_xx_ = 0, metric_xy_ = 0, metric_yy_ = 0;
-  std::array<HalfFloat, 3> turned_x_, turned_y_, gradient_x_, gradient_y_;  // R G B
-  std::array<HalfFloat, 3> hessian_;                                        // xx, xy, yy
-  std::array<HalfFloat, 3> third_order_;  // xx, xy, yy: the matrix whose product with a place, to the power 3/2, is an error
-  HalfFloat gradient_noise_;
+  std::array<Bfloat16, 3> turned_x_, turned_y_, gradient_x_, gradient_y_;  // R G B
+  std::array<Bfloat16, 3> hessian_;                                        // xx, xy, yy
+  std::array<Bfloat16, 3> third_order_;  // xx, xy, yy: the matrix whose product with a place, to the power 3/2, is an error
+  Bfloat16 gradient_noise_;
   std::uint16_t room_ = 0;
   std::array<std::uint32_t, kReplicates> replicates_{};  // RGBE
 };
