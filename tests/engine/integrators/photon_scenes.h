@@ -41,6 +41,20 @@ inline ShotPhotons shoot(const Scene& scene, const PhotonSettings& settings, int
   return shoot_photons(scene, PhotonTracer(scene, settings), {0, settings.photons}, std::size_t{1} << 26, threads, kNever);
 }
 
+// A ball of glass, a rough mirror and a lamp in a closed room of that albedo: everything at once. The lamp is so large that paths
+// converge.
+inline SceneBuilder room_with_balls(float albedo) {
+  SceneBuilder builder;
+  builder.shape(cube(Transform::scale(1.5, 1, 1.5)), builder.diffuse(albedo), 0, true);
+  builder.lamp_down(0, 0.99f, 0, 1, 1, builder.diffuse(0), 2);
+  builder.shape(SphereDescription{{0.5f, -0.5f, 0}, 0.35f}, builder.add(DielectricDescription{1.5f}));
+  builder.shape(SphereDescription{{-0.5f, -0.5f, 0.2f}, 0.35f},
+                builder.add(RoughConductorDescription{{.perfect = true, .specular_reflectance = Rgb{0.9f}},
+                                                      {MicrofacetDistribution::kGgx, 0.15f, 0.15f}}));
+  builder.look({0, 0, 1.4}, {0, -0.5, 0});
+  return builder;
+}
+
 // Looks at a place, with pixels of so many metres there.
 inline SceneDescription seen(SceneBuilder builder, const std::array<double, 3>& from, const std::array<double, 3>& at, double pixel,
                              int width, int height) {

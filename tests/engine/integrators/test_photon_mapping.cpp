@@ -19,6 +19,7 @@ using testing::kNever;
 using testing::kTwinZ;
 using testing::Measurement;
 using testing::replicated;
+using testing::room_with_balls;
 using testing::SceneBuilder;
 
 FrameResult render(const Scene& scene, const Goal& goal, std::uint64_t seed, int threads = 2, int tile = 64) {
@@ -62,22 +63,8 @@ TEST(PhotonMapping, G2_IntegratingSphere) {
   }
 }
 
-// A ball of glass, a rough mirror and a lamp in a closed room: everything at once, against the path tracer. The lamp is so large
-// that that converges.
-SceneBuilder room() {
-  SceneBuilder builder;
-  builder.shape(testing::cube(Transform::scale(1.5, 1, 1.5)), builder.diffuse(0.6f), 0, true);
-  builder.lamp_down(0, 0.99f, 0, 1, 1, builder.diffuse(0), 2);
-  builder.shape(SphereDescription{{0.5f, -0.5f, 0}, 0.35f}, builder.add(DielectricDescription{1.5f}));
-  builder.shape(SphereDescription{{-0.5f, -0.5f, 0.2f}, 0.35f},
-                builder.add(RoughConductorDescription{{.perfect = true, .specular_reflectance = Rgb{0.9f}},
-                                                      {MicrofacetDistribution::kGgx, 0.15f, 0.15f}}));
-  builder.look({0, 0, 1.4}, {0, -0.5, 0});
-  return builder;
-}
-
 TEST(PhotonMapping, FindsAllLightOnce) {
-  SceneDescription description = with(room(), true, 1 << 14);
+  SceneDescription description = with(room_with_balls(0.6f), true, 1 << 14);
   description.camera.fov_degrees = 80;
   description.film.width = description.film.height = 32;
   const Scene scene(description, 2);
@@ -95,7 +82,7 @@ TEST(PhotonMapping, FindsAllLightOnce) {
 }
 
 TEST(PhotonMapping, BitsDependOnNeitherThreadsNorTiles) {
-  SceneDescription description = with(room(), true);
+  SceneDescription description = with(room_with_balls(0.6f), true);
   description.film.width = description.film.height = 40;
   description.camera.fov_degrees = 80;
   const Scene scene(description, 1);
@@ -162,7 +149,7 @@ TEST(PhotonMapping, Fails44_NoLightLeaksUnderAThinWall) {
 
 // A goal below the blur ends without a claim, and says what to do; one above it is met.
 TEST(PhotonMapping, BlurThatNoSampleTakesAwayIsNotClaimed) {
-  SceneDescription description = with(room(), false, 256);
+  SceneDescription description = with(room_with_balls(0.6f), false, 256);
   description.camera.fov_degrees = 80;
   description.film.width = description.film.height = 32;
   const Scene scene(description, 1);

@@ -35,8 +35,8 @@ TEST(MaterialNeeds, OfNormalMapsAreTangentsAndOfBumpMapsDerivativesToo) {
   EXPECT_TRUE(needs({BumpMapDescription{1, 0, 1}, DiffuseDescription{}}).uv_derivatives);
 }
 
-// Who scatters into single directions has said so; and who has said so does it.
-TEST(MaterialNeeds, OfDeltaLobesAreThoseThatSamplingShows) {
+// All materials that hold no others.
+std::vector<testing::MaterialCase> all_cases() {
   std::vector<testing::MaterialCase> cases = testing::continuous_cases();
   cases.push_back({"principled", PrincipledDescription{}});
   cases.push_back({"gltf", GltfDescription{}});
@@ -44,7 +44,12 @@ TEST(MaterialNeeds, OfDeltaLobesAreThoseThatSamplingShows) {
   cases.push_back({"thindielectric", ThinDielectricDescription{}});
   cases.push_back({"conductor", testing::gold()});
   cases.push_back({"null", NullDescription{}});
-  for (const testing::MaterialCase& c : cases) {
+  return cases;
+}
+
+// Who scatters into single directions has said so; and who has said so does it.
+TEST(MaterialNeeds, OfDeltaLobesAreThoseThatSamplingShows) {
+  for (const testing::MaterialCase& c : all_cases()) {
     const std::unique_ptr<Bsdf> bsdf = testing::make(c.description);
     bool delta = false;
     for (int i = 0; i < 64; ++i) {
@@ -59,15 +64,8 @@ TEST(MaterialNeeds, OfDeltaLobesAreThoseThatSamplingShows) {
 
 // Photons of caustics are shot at glossy surfaces alone: what is not glossy may scatter nothing sharply.
 TEST(MaterialNeeds, OfGlossAreThoseThatScatterMoreNarrowlyThanADiffuseSurface) {
-  std::vector<testing::MaterialCase> cases = testing::continuous_cases();
-  cases.push_back({"principled", PrincipledDescription{}});
-  cases.push_back({"gltf", GltfDescription{}});
-  cases.push_back({"dielectric", DielectricDescription{}});
-  cases.push_back({"thindielectric", ThinDielectricDescription{}});
-  cases.push_back({"conductor", testing::gold()});
-  cases.push_back({"null", NullDescription{}});
   int dull = 0;
-  for (const testing::MaterialCase& c : cases) {
+  for (const testing::MaterialCase& c : all_cases()) {
     if (needs({c.description}).glossy) continue;
     ++dull;
     const std::unique_ptr<Bsdf> bsdf = testing::make(c.description);
