@@ -14,13 +14,22 @@ from farm import Farm
 
 
 def true_errors(
-    tmp_path: Path, scene: str, side: int, goal: float, seeds: int, reference_spp: int, method: str = "path"
+    tmp_path: Path,
+    scene: str,
+    side: int,
+    goal: float,
+    seeds: int,
+    reference_spp: int,
+    method: str = "path",
+    reference_method: str | None = None,
 ) -> np.ndarray:
-    """The true error of one job for each seed, against a long reference by the same method."""
-    file, size = ROOT / "scenes" / scene / "scene.xml", ("--size", f"{side}x{side}", "--integrator", method)
-    reference = beauty(render_alone(file, tmp_path / "reference.exr", *size, "--spp", reference_spp, "--seed", 10_000))
+    """The true error of one job for each seed, against a long reference by the same method or another."""
+    file, size = ROOT / "scenes" / scene / "scene.xml", ("--size", f"{side}x{side}", "--integrator")
+    long = (*size, reference_method or method, "--spp", reference_spp, "--seed", 10_000)
+    reference = beauty(render_alone(file, tmp_path / "reference.exr", *long))
     jobs = (
-        render_alone(file, tmp_path / "image.exr", *size, "--rel-error", goal, "--seed", seed) for seed in range(seeds)
+        render_alone(file, tmp_path / "image.exr", *size, method, "--rel-error", goal, "--seed", seed)
+        for seed in range(seeds)
     )
     return np.array([relative_error(beauty(job), reference) for job in jobs])
 
@@ -40,6 +49,15 @@ def test_error_goal_is_kept_with_photons(tmp_path: Path) -> None:
     assert np.count_nonzero(errors <= 0.1) >= 7, errors
     assert np.median(errors) > 0.04, errors
     assert np.count_nonzero(errors <= 0.04) < 7, errors
+
+
+def test_error_goal_is_kept_with_a_cache(tmp_path: Path) -> None:
+    """With a bias that path tracing has not: the reference is path traced."""
+    errors = true_errors(tmp_path, "cornell", 64, 0.04, 8, 8192, "irradiance-cache", "path")
+    print(errors)
+    assert np.count_nonzero(errors <= 0.04) >= 7, errors
+    assert np.median(errors) > 0.016, errors
+    assert np.count_nonzero(errors <= 0.016) < 7, errors
 
 
 # A point light in a ball of glass, and another one without.

@@ -6,6 +6,7 @@
 
 #include "integrators/irradiance/cache_quality.h"
 #include "integrators/irradiance/irradiance_cache.h"
+#include "integrators/irradiance/neighbour_check.h"
 
 namespace fluxfarm {
 namespace {
@@ -61,6 +62,13 @@ TEST(IrradianceRecord, IsBoundedByWhatIsNearAndByItsGradient) {
   EXPECT_NEAR(steep.larger_radius(), 5, 0.05f);
 }
 
+// What is near may hide what shines.
+TEST(IrradianceRecord, IsBoundedByWhatIsNearInTheDark) {
+  HemisphereIrradiance light = even_light(0);
+  light.clearance = {1 / 0.09, 0, 1 / 0.09};
+  EXPECT_NEAR(IrradianceRecord(kPlace, kFrame, 9, light, kLimits).larger_radius(), 0.3f, 0.01f);
+}
+
 TEST(IrradianceRecord, GoesOnWithItsGradients) {
   HemisphereIrradiance light = even_light(2);
   light.gradient_x = Rgb{1, 0, 0};
@@ -104,6 +112,43 @@ TEST(IrradianceRecord, BringsTheNoiseOfItsReplicates) {
   EXPECT_NEAR(third->irradiance.b, 4, 0.04f);
   EXPECT_NEAR(other->irradiance.b, 2, 0.02f);
   EXPECT_FALSE(cache.interpolate({kPlace, kFrame.n, 8}, 3));  // light that met fewer surfaces
+}
+
+// ---------------------------------------------------------------- neighbours
+
+KeptRecord kept(Vec3f place, HemisphereIrradiance light) {
+  GatherPlace at;
+  at.position = kPlace + kFrame.to_world(place);
+  at.frame = kFrame;
+  at.room = 9;
+  return {at, light};
+}
+
+TEST(NeighbourCheck, KeepsARecordFromWhereItIsWrong) {
+  const auto checked = [](const HemisphereIrradiance& light, const HemisphereIrradiance& other) {
+    KeptRecord record = kept({}, light);
+    const IrradianceRecord before(record.place.position, record.place.frame, 9, record.light, kLimits);
+    check_by_neighbour(record, before, kept({0.5f, 0, 0}, other), 0.5f);
+    return IrradianceRecord(record.place.position, record.place.frame, 9, record.light, kLimits);
+  };
+  const IrradianceRecord wrong = checked(even_light(2), even_light(1));
+  const auto error = [&](float x, float y) { return wrong.use_at(kPlace + kFrame.to_world({x, y, 0}), kFrame.n, 4).error; };
+  EXPECT_NEAR(wrong.extrapolate(kPlace + kFrame.to_world({0.5f, 0, 0}), kFrame.n).error, 1, 0.02f);
+  EXPECT_NEAR(wrong.smaller_radius(), 0.5f * std::cbrt(0.2f), 0.01f);  // where its cube is the tolerance, 0.2
+  EXPECT_NEAR(error(wrong.smaller_radius() * 0.99f, 0), 0.2f, 0.02f);
+  EXPECT_LT(error(0, 0.5f), 1e-6f);  // of what lies to the side it has not heard
+  EXPECT_NEAR(wrong.larger_radius(), kLimits.max_radius, 0.01f);
+  // Right, or as far as noise can tell.
+  EXPECT_NEAR(checked(even_light(2), even_light(2)).smaller_radius(), kLimits.max_radius, 0.01f);
+  HemisphereIrradiance noisy = even_light(1);
+  for (std::size_t i = 0; i < kReplicates; ++i) noisy.by_replicate[i] = Rgb{i % 2 == 0 ? 0.0f : 2.0f};
+  EXPECT_NEAR(noisy.noise(), 1 / std::sqrt(7.0f), 1e-3f);
+  EXPECT_GT(checked(even_light(1.7f), noisy).smaller_radius(), 1.9f);
+  EXPECT_LT(checked(even_light(2), noisy).smaller_radius(), 1);
+  // Twin: a gradient that foresees it.
+  HemisphereIrradiance steep = even_light(2);
+  steep.gradient_x = Rgb{-2};
+  EXPECT_NEAR(checked(steep, even_light(1)).larger_radius(), kLimits.max_radius, 0.01f);
 }
 
 // ---------------------------------------------------------------- cache

@@ -166,6 +166,23 @@ TEST(IrradianceFailures, CameraThatLooksIntoAMirror) {
   expect_guarded(seen(builder, {0, 1.5, 0.4}, {0, 0.9, -2}, 70), no_guard);
 }
 
+// A black plate close under the ceiling: a record over it may see nothing at all, and must not say so of the bright ceiling beside.
+TEST(IrradianceFailures, DarkSlit) {
+  SceneBuilder builder = room();
+  builder.shape(cube(Transform::translate(0, 2.47, 0) * Transform::scale(0.35, 0.005, 0.3)), builder.diffuse(0));
+  builder.emitter(lamp({0, 1.5f, 0.5f}));
+  expect_guarded(seen(builder, {0, 1.7, 1.9}, {0, 2.5, 0.25}, 40), no_guard);
+}
+
+// What shines on the wall from right beside it ends at the shadow's edge, of which a record before that sees as much to its left as
+// to its right nothing.
+TEST(IrradianceFailures, ShadowOnTheFloorBesideAWall) {
+  SceneBuilder builder = room();
+  builder.shape(cube(Transform::translate(-0.8, 0.6, -1.3) * Transform::scale(0.3, 0.6, 0.02)), builder.diffuse(0.6f));
+  builder.emitter(lamp({-1, 1.8f, -0.2f}));
+  expect_guarded(seen(builder, {0.4, 0.9, 0.2}, {-0.6, 0.15, -2}, 40), no_guard);
+}
+
 // Where there are no records paths are traced, so that few of them are no worse; stretched ones are.
 TEST(IrradianceFailures, FewRecords) {
   const Scene scene(seen(corner(), {1.9, 1.0, 1.1}, {0.4, 0.3, 0.3}, 50), 1);

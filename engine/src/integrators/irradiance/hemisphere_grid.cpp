@@ -43,6 +43,15 @@ std::array<float, 3> parts(const std::array<float, 3>& distances) {
 
 }  // namespace
 
+float HemisphereIrradiance::noise() const {
+  float squares = 0;
+  for (const Rgb& replicate : by_replicate) {
+    const float difference = luminance(replicate) - luminance(irradiance);
+    squares += difference * difference;
+  }
+  return std::sqrt(squares / (kReplicates * (kReplicates - 1)));
+}
+
 HemisphereIrradiance HemisphereGrid::irradiance() const {
   HemisphereIrradiance sum;
   float least_distance = far_;

@@ -35,8 +35,13 @@ struct HemisphereIrradiance {
   // An ellipse of the tangent plane, d^T clearance d < 1, m^-2: the space around it has none of the surfaces that were seen. Long
   // where they leave room, as beside a wall.
   TangentMatrix clearance;
-  Vec3f nearest;              // of their points that were seen, from the place, in its frame, m
+  Vec3f nearest;  // of their points that were seen, from the place, in its frame, m
+  // What neighbours have shown to be wrong: a matrix whose product with a place, to the power 3/2, is the error there, W m^-2.
+  TangentMatrix misfit;
   float near_irradiance = 0;  // luminance that what is near would make if it were all around, W m^-2
+
+  // Standard deviation of the irradiance's luminance by that of its replicates, W m^-2.
+  float noise() const;
 };
 
 class HemisphereGrid {

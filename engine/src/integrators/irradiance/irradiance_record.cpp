@@ -77,9 +77,11 @@ IrradianceRecord::IrradianceRecord(Vec3f position, const Frame& frame, int room,
   // The sum of the ellipses' matrices lies in all of them.
   TangentMatrix metric;
   add(metric, absolute(light.hessian), 1 / (2 * allowed));
-  const double contrast = static_cast<double>(kThirdOrder) * std::max(brightness, static_cast<double>(light.near_irradiance));
+  const double contrast = static_cast<double>(kThirdOrder) *
+                          std::max(brightness, static_cast<double>(std::max(light.near_irradiance, limits.least_irradiance)));
   TangentMatrix third_order;
   add(third_order, light.clearance, std::pow(contrast, 2.0 / 3));
+  add(third_order, light.misfit, 1);
   add(metric, third_order, std::pow(allowed, -2.0 / 3));
   add(metric, {steep_x * steep_x, steep_x * steep_y, steep_y * steep_y}, per_brightness * per_brightness);
   add(metric, {1, 0, 1}, per_reach * per_reach);
@@ -113,13 +115,13 @@ bool IrradianceRecord::is_blocked_by(Vec3f point) const {
          kWithin * kWithin;
 }
 
-Bounds IrradianceRecord::bounds(float normal_metric) const {
+Bounds IrradianceRecord::bounds(float normal_metric, float radii) const {
   // Of an ellipsoid x^T M x <= 1 the extent along a direction is the root of the inverse there.
   const Frame frame(normal());
   const float determinant = metric_xx_ * metric_yy_ - metric_xy_ * metric_xy_;
   const auto extent = [&](float s, float t, float n) {
     const float tangential = (metric_yy_ * s * s - 2 * metric_xy_ * s * t + metric_xx_ * t * t) / determinant;
-    return std::sqrt(std::max(tangential, 0.0f) + n * n / normal_metric);
+    return std::sqrt(std::max(tangential, 0.0f) * radii * radii + n * n / normal_metric);
   };
   const Vec3f half{extent(frame.s.x, frame.t.x, frame.n.x), extent(frame.s.y, frame.t.y, frame.n.y),
                    extent(frame.s.z, frame.t.z, frame.n.z)};

@@ -47,7 +47,9 @@ class IrradianceRecord {
   // most kMostRoom. A record is used in an ellipse of the tangent plane that is smaller than each of several:
   // - where half of the Hessian times the distance squared is the tolerance [Schwarzhaupt12, there with the error over the area];
   // - the Hessian tells of the record's place alone: how it changes around that is not known, but goes with the cube of
-  //   the distance over the one to what is near, and there is a distance at which that is the tolerance;
+  //   the distance over the one to what is near, and there is a distance at which that is the tolerance; even in the dark, for
+  //   what is near may hide what shines;
+  // - the same for errors that neighbours have found (neighbour_check.h);
   // - where the gradient would have doubled the irradiance, or left none of it;
   // - max_radius.
   IrradianceRecord(Vec3f position, const Frame& frame, int room, const HemisphereIrradiance& light, const RecordLimits& limits);
@@ -59,9 +61,9 @@ class IrradianceRecord {
   // Semi-axes over the tangent plane, m.
   float larger_radius() const { return 1 / std::sqrt(eigenvalues()[0]); }
   float smaller_radius() const { return 1 / std::sqrt(eigenvalues()[1]); }
-  Bounds bounds() const { return bounds(kFlat * (metric_xx_ + metric_yy_)); }
-  // Of the space over where the record is used: an ellipsoid that is as high as it is narrow.
-  Bounds space() const { return bounds(eigenvalues()[1]); }
+  Bounds bounds() const { return bounds(kFlat * (metric_xx_ + metric_yy_), 1); }
+  // Of the space over where the record is used, or of that many times its radii: an ellipsoid that is as high as it is narrow.
+  Bounds space(float radii = 1) const { return bounds(eigenvalues()[1] / (radii * radii), radii); }
   // Whether a point of another surface (world, m) stands well within that space.
   bool is_blocked_by(Vec3f point) const;
 
@@ -74,6 +76,11 @@ class IrradianceRecord {
   // On a surface at `place` with the shading normal `normal` (unit, towards the light). `per_angle_squared`: one over the square of
   // the angle (rad) between normals at which records are used no more.
   Use use_at(Vec3f place, Vec3f normal, float per_angle_squared) const;
+  // The same without its weight, anywhere.
+  Use extrapolate(Vec3f place, Vec3f normal) const {
+    const Frame frame(this->normal());
+    return extrapolate_local(frame.to_local(place - position_), frame.to_local(normal));
+  }
 
   // For the part `replicate` of the samples: factors to irradiance() that bring the noise of its strata.
   Rgb replicate_share(std::uint32_t replicate) const { return from_rgbe(replicates_[replicate]); }
@@ -89,8 +96,10 @@ class IrradianceRecord {
   static constexpr float kFlat = 16, kSame = 1024;
 
   std::array<float, 2> eigenvalues() const;
-  // `normal_metric`: as metric_, along the normal.
-  Bounds bounds(float normal_metric) const;
+  // `normal_metric`: as metric_, along the normal. `radii`: so many times as large over the tangent plane.
+  Bounds bounds(float normal_metric, float radii) const;
+  // Irradiance and error at a place, and for a normal, of the record's frame.
+  Use extrapolate_local(Vec3f d, Vec3f n) const;
 
   Vec3f position_;
   std::uint32_t normal_ = 0;  // octahedral
@@ -115,12 +124,17 @@ inline IrradianceRecord::Use IrradianceRecord::use_at(Vec3f place, Vec3f normal,
   if (!(distance_squared < 1)) return {};
   const float angle_squared = 2 * (1 - n.z) * per_angle_squared;
   if (!(angle_squared < 1)) return {};
+  Use use = extrapolate_local(d, n);
+  use.weight = (1 - std::sqrt(distance_squared)) * (1 - angle_squared);
+  return use;
+}
+
+inline IrradianceRecord::Use IrradianceRecord::extrapolate_local(Vec3f d, Vec3f n) const {
   const auto linear = [&](float e, std::size_t c) {
     return e * n.z + turned_x_[c].value() * n.x + turned_y_[c].value() * n.y + gradient_x_[c].value() * d.x +
            gradient_y_[c].value() * d.y;
   };
   Use use;
-  use.weight = (1 - std::sqrt(distance_squared)) * (1 - angle_squared);
   use.irradiance = {std::max(linear(irradiance_.r, 0), 0.0f), std::max(linear(irradiance_.g, 1), 0.0f),
                     std::max(linear(irradiance_.b, 2), 0.0f)};
   const float second = hessian_[0].value() * d.x * d.x + 2 * hessian_[1].value() * d.x * d.y + hessian_[2].value() * d.y * d.y;

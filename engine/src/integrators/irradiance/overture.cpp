@@ -9,6 +9,7 @@
 #include "integrators/irradiance/cached_irradiance.h"
 #include "integrators/irradiance/clearance.h"
 #include "integrators/irradiance/hemisphere_sampler.h"
+#include "integrators/irradiance/neighbour_check.h"
 #include "sampling/hash.h"
 #include "support/error.h"
 #include "support/parallel.h"
@@ -101,6 +102,7 @@ class OvertureBuilder {
       if (look.surface) points.push_back(*look.surface);
     }
     keep_clear_of_all(points);
+    check_by_neighbours();
     cache_ = IrradianceCache(records_, quality_.max_angle);
     refused_ = IrradianceCache(refused_records_, quality_.max_angle);
   }
@@ -128,11 +130,29 @@ class OvertureBuilder {
     for (const std::vector<Blocked>& group : all) {
       for (const auto& [index, point] : group) {
         if (!records_[index].is_blocked_by(point)) continue;
-        Kept& kept = kept_[index];
+        KeptRecord& kept = kept_[index];
         keep_clear_of(kept.place.frame.to_local(point - kept.place.position), kept.light.clearance);
         records_[index] = record(kept);
       }
     }
+  }
+
+  void check_by_neighbours() {
+    std::vector<Bounds> spaces;
+    for (const IrradianceRecord& record : records_) spaces.push_back(record.space(kCompared));
+    const BoundsTree tree(spaces);
+    std::vector<std::vector<std::uint32_t>> near(records_.size());
+    parallel_for(near.size(), threads_, [&](std::size_t i, int) {
+      tree.for_each_near(records_[i].position(), [&](std::uint32_t leaf) {
+        const std::uint32_t other = tree.order()[leaf];
+        if (records_[other].room() == records_[i].room()) near[i].push_back(other);
+        return true;
+      });
+    });
+    for (std::size_t i = 0; i < near.size(); ++i) {
+      for (const std::uint32_t other : near[i]) check_by_neighbour(kept_[other], records_[other], kept_[i], quality_.max_angle);
+    }
+    for (std::size_t i = 0; i < records_.size(); ++i) records_[i] = record(kept_[i]);
   }
 
   // What the path through a pixel meets.
@@ -177,11 +197,6 @@ class OvertureBuilder {
     return look;
   }
 
-  // A record with what it was made of.
-  struct Kept {
-    GatherPlace place;
-    HemisphereIrradiance light;
-  };
   struct Made {
     std::optional<HemisphereIrradiance> light;  // empty: refused
     std::optional<Vec3f> nearest;               // of what was seen, in the frame of the place, m
@@ -192,7 +207,7 @@ class OvertureBuilder {
     if (nearest && length(*nearest) < kLeastRoom * footprint) return {{}, nearest};
     HemisphereGrid grid(quality_.strata, 1e3f * scene_.radius());
     worker.sampler->gather(place, seed_, index, grid);
-    const Kept kept{place, grid.irradiance()};
+    const KeptRecord kept{place, grid.irradiance()};
     const IrradianceRecord made = record(kept);
     const float least = kLeastRadius * footprint;
     if (!(made.larger_radius() * made.smaller_radius() >= least * least)) return {{}, kept.light.nearest};
@@ -202,7 +217,7 @@ class OvertureBuilder {
   // Side of what a pixel sees there, m.
   float footprint_of(const GatherPlace& place) const { return scene_.camera().pixel_angle() * place.length; }
 
-  IrradianceRecord record(const Kept& kept) const {
+  IrradianceRecord record(const KeptRecord& kept) const {
     const RecordLimits limits{quality_.tolerance, kLeastIrradiance, kLargestRadius * scene_.radius()};
     return {kept.place.position, kept.place.frame, kept.place.room, kept.light, limits};
   }
@@ -221,7 +236,7 @@ class OvertureBuilder {
   int threads_;
   const std::atomic<bool>& cancelled_;
   std::vector<std::unique_ptr<Worker>> workers_;
-  std::vector<Kept> kept_;
+  std::vector<KeptRecord> kept_;
   std::vector<Vec3f> near_points_;  // world, m
   std::vector<IrradianceRecord> records_, refused_records_;
   IrradianceCache cache_, refused_;
