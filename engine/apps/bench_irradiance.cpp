@@ -25,7 +25,7 @@ nlohmann::json bench_irradiance(const Scene& scene, int threads) {
   double seconds = 0;
   for (;; quality.tolerance /= 2) {
     const BenchClock::time_point start = BenchClock::now();
-    overture = make_overture(scene, nullptr, 0, quality, threads, never);
+    overture = make_overture(scene, nullptr, nullptr, 0, quality, threads, never);
     seconds = seconds_since(start);
     if (overture.cache.records().size() >= kRecords || quality.tolerance < kLeastTolerance) break;
   }

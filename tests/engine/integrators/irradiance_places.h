@@ -72,7 +72,7 @@ inline double direct_irradiance(const Scene& scene, const GatherPlace& place) {
 inline std::vector<Gathered> gathered(const Scene& scene, const std::vector<GatherPlace>& places, int strata) {
   constexpr std::uint64_t kSeed = 0x9e3779b97f4a7c15;
   RayQueries queries(scene.accelerator());
-  const auto sampler = make_hemisphere_sampler(scene, nullptr, queries);
+  const auto sampler = make_hemisphere_sampler(scene, nullptr, nullptr, queries);
   HemisphereGrid grid(strata, 1e3f * scene.radius());
   std::vector<Gathered> all;
   for (std::size_t i = 0; i < places.size(); ++i) {
@@ -112,7 +112,8 @@ using MakeCache = std::function<IrradianceCache(const Scene& scene, std::uint64_
 
 // At the quality of the 64 samples that a picture has by default.
 inline IrradianceCache guarded_cache(const Scene& scene, std::uint64_t seed) {
-  return make_overture(scene, nullptr, seed, quality_of(cache_level({16, 17})), 1, kNever).cache;
+  const IrradianceCache first = make_overture(scene, nullptr, nullptr, seed, quality_of(cache_level({0, 1})), 1, kNever).cache;
+  return make_overture(scene, nullptr, &first, seed + 1000, quality_of(cache_level({16, 17})), 1, kNever).cache;
 }
 
 // A cache that covers the film, too, with records of what `strip` leaves of what is known of a place, and none refused.
@@ -120,7 +121,7 @@ inline MakeCache unguarded_cache(std::function<void(HemisphereIrradiance&)> stri
   return [strip](const Scene& scene, std::uint64_t seed) {
     const CacheQuality quality = quality_of(cache_level({16, 17}));
     RayQueries queries(scene.accelerator());
-    const auto sampler = make_hemisphere_sampler(scene, nullptr, queries);
+    const auto sampler = make_hemisphere_sampler(scene, nullptr, nullptr, queries);
     HemisphereGrid grid(quality.strata, 1e3f * scene.radius());
     std::vector<IrradianceRecord> records;
     IrradianceCache cache;

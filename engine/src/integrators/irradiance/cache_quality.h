@@ -1,8 +1,9 @@
 // How good a cache has to be for the samples that use it.
 //
-// The samples of a pixel fall into levels: 0 to 15, 16 to 63, 64 to 255 and so on, and each level has a cache of its own, with
-// twice the paths in a record and half the tolerance of the last but one. So a picture has as much of a cache as its goal needs,
-// and as samples are added its error goes to zero: by noise of records and by interpolation.
+// The samples of a pixel fall into levels: 0 to 15, 16 to 127, 128 to 1023 and so on, and each level has a cache of its own, with
+// half the tolerance of the last and more paths in a record, which end where the last level's cache knows the irradiance. So a
+// picture has as much of a cache as its goal needs, and as samples are added its error goes to zero: by noise of records and by
+// interpolation.
 #pragma once
 
 #include <algorithm>
@@ -30,13 +31,14 @@ constexpr SampleRange cache_level(SampleRange samples) {
 }
 
 inline CacheQuality quality_of(SampleRange level) {
-  constexpr float kFirstPaths = 256, kFirstTolerance = 0.15f;  // choices
-  // 1, 2, 4, ... for one level after the other.
-  const float growth = std::pow(static_cast<float>(level.end) / static_cast<float>(kFirstCacheLevel), 1.0f / 3);
-  const int replicate_side = static_cast<int>(std::ceil(std::sqrt(kFirstPaths * growth) / static_cast<float>(kReplicates)));
-  const float tolerance = kFirstTolerance / growth;
+  constexpr float kFirstSide = 16, kFirstTolerance = 0.15f;  // choices
+  const float growth = static_cast<float>(level.end) / static_cast<float>(kFirstCacheLevel);
+  // Paths in proportion to the fourth root of samples, in strata of which each replicate has as many.
+  const auto replicates = static_cast<float>(kReplicates);
+  const int side = static_cast<int>(kReplicates) * static_cast<int>(std::lround(kFirstSide * std::pow(growth, 0.125f) / replicates));
+  const float tolerance = kFirstTolerance / std::cbrt(growth);
   // A turn by t brings light of the horizon in and out: t^2 / 4 of all, if it is even.
-  return {.strata = static_cast<int>(kReplicates) * replicate_side, .tolerance = tolerance, .max_angle = 2 * std::sqrt(tolerance)};
+  return {.strata = side, .tolerance = tolerance, .max_angle = 2 * std::sqrt(tolerance)};
 }
 
 }  // namespace fluxfarm

@@ -4,6 +4,7 @@
 #include <array>
 #include <limits>
 
+#include "integrators/irradiance/cached_irradiance.h"
 #include "integrators/path/path_group.h"
 #include "integrators/photon/caustic_photons.h"
 #include "sampling/warp.h"
@@ -34,7 +35,7 @@ class FirstDistance : public Photons {
     Photons::arrive(state.photons, distance);
   }
   bool ended(const State& state) const { return Photons::ended(state.photons); }
-  void gather(const State& state, const PathVertex& vertex, int room, const Rgb& throughput, const LightHistory& history,
+  void gather(State& state, const PathVertex& vertex, int room, const Rgb& throughput, const LightHistory& history,
               SampleResult& result) {
     Photons::gather(state.photons, vertex, room, throughput, history, result);
   }
@@ -91,9 +92,14 @@ class PathSampler final : public HemisphereSampler {
 
 }  // namespace
 
-std::unique_ptr<HemisphereSampler> make_hemisphere_sampler(const Scene& scene, const CausticMaps* caustics, RayQueries& queries) {
-  if (caustics == nullptr) return std::make_unique<PathSampler<WithoutPhotons>>(scene, WithoutPhotons(), queries);
-  return std::make_unique<PathSampler<CausticPhotons>>(scene, CausticPhotons(scene, *caustics), queries);
+std::unique_ptr<HemisphereSampler> make_hemisphere_sampler(const Scene& scene, const CausticMaps* caustics,
+                                                           const IrradianceCache* known, RayQueries& queries) {
+  const auto make = [&]<typename Photons>(Photons photons) -> std::unique_ptr<HemisphereSampler> {
+    if (known == nullptr) return std::make_unique<PathSampler<Photons>>(scene, std::move(photons), queries);
+    using Cached = CachedIrradiance<Photons>;
+    return std::make_unique<PathSampler<Cached>>(scene, Cached(*known, std::move(photons)), queries);
+  };
+  return caustics == nullptr ? make(WithoutPhotons()) : make(CausticPhotons(scene, *caustics));
 }
 
 std::optional<Vec3f> nearest_point(const GatherPlace& place, RayQueries& queries) {

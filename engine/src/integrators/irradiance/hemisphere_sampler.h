@@ -7,6 +7,7 @@
 
 #include "accel/ray_queries.h"
 #include "integrators/irradiance/hemisphere_grid.h"
+#include "integrators/irradiance/irradiance_cache.h"
 #include "integrators/photon/caustic_maps.h"
 #include "math/frame.h"
 #include "scene/scene.h"
@@ -34,7 +35,9 @@ class HemisphereSampler {
 
 // With `caustics` photons carry their part of the light, as they do for paths from the camera: what they bring to the place itself
 // is left out, and what they bring to surfaces that it sees is not. They have a map for each replicate. Null: there are none.
-std::unique_ptr<HemisphereSampler> make_hemisphere_sampler(const Scene& scene, const CausticMaps* caustics, RayQueries& queries);
+// With `known` paths end where that cache knows the irradiance, as paths from the camera do. Null: they are traced to their ends.
+std::unique_ptr<HemisphereSampler> make_hemisphere_sampler(const Scene& scene, const CausticMaps* caustics,
+                                                           const IrradianceCache* known, RayQueries& queries);
 
 // The nearest of the points where a few rays from `place` meet surfaces, from the place, in its frame, m; empty if they meet none.
 std::optional<Vec3f> nearest_point(const GatherPlace& place, RayQueries& queries);

@@ -67,7 +67,6 @@ void IrradianceCacheIntegrator::prepare(const Scene& scene) {
 
 IrradianceCacheIntegrator::Level IrradianceCacheIntegrator::level(std::uint64_t seed, SampleRange samples, int threads,
                                                                   const std::atomic<bool>& cancelled) const {
-  const std::lock_guard lock(mutex_);
   const auto known = std::ranges::find_if(levels_, [&](const Level& l) { return l.seed == seed && l.samples == samples; });
   if (known != levels_.end()) {
     levels_.splice(levels_.begin(), levels_, known);
@@ -75,12 +74,15 @@ IrradianceCacheIntegrator::Level IrradianceCacheIntegrator::level(std::uint64_t 
     again.rays = 0;  // it took none this time
     return again;
   }
+  Level last;
+  if (samples.begin > 0) last = level(seed, cache_level({samples.begin - 1, samples.begin}), threads, cancelled);
   std::optional<CausticMaps> caustics;
   const std::uint64_t own_seed = hash_words(seed, samples.begin);
   if (projection_) caustics.emplace(*scene_, &*projection_, own_seed, SampleRange{0, kReplicates}, threads, cancelled);
-  Overture overture = make_overture(*scene_, caustics ? &*caustics : nullptr, own_seed, quality_of(samples), threads, cancelled);
+  Overture overture =
+      make_overture(*scene_, caustics ? &*caustics : nullptr, last.cache.get(), own_seed, quality_of(samples), threads, cancelled);
   levels_.push_front({seed, samples, std::make_shared<const IrradianceCache>(std::move(overture.cache)),
-                      overture.rays + (caustics ? caustics->rays() : 0)});
+                      last.rays + overture.rays + (caustics ? caustics->rays() : 0)});
   if (levels_.size() > kKeptLevels) levels_.pop_back();
   return levels_.front();
 }
@@ -88,6 +90,7 @@ IrradianceCacheIntegrator::Level IrradianceCacheIntegrator::level(std::uint64_t 
 std::shared_ptr<const PreparedPass> IrradianceCacheIntegrator::prepare_pass(std::uint64_t seed, SampleRange samples, int threads,
                                                                             const std::atomic<bool>& cancelled) const {
   if (paths_) return nullptr;
+  const std::lock_guard lock(mutex_);
   Level made = level(seed, cache_level(samples), threads, cancelled);
   std::unique_ptr<const CausticMaps> caustics;
   if (projection_) {

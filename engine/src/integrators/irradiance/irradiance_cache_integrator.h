@@ -40,11 +40,12 @@ class IrradianceCacheIntegrator final : public Integrator {
 
  private:
   struct Level {
-    std::uint64_t seed;
+    std::uint64_t seed = 0;
     SampleRange samples;
     std::shared_ptr<const IrradianceCache> cache;
-    std::uint64_t rays;
+    std::uint64_t rays = 0;  // that it took, and those before it that had to be made
   };
+  // With mutex_ held.
   Level level(std::uint64_t seed, SampleRange samples, int threads, const std::atomic<bool>& cancelled) const;
 
   const Scene* scene_ = nullptr;

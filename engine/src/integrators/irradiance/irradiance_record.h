@@ -115,8 +115,11 @@ class IrradianceRecord {
 };
 
 inline IrradianceRecord::Use IrradianceRecord::use_at(Vec3f place, Vec3f normal, float per_angle_squared) const {
+  // Most records are too far away: the lesser eigenvalue is above the determinant over the trace.
+  const Vec3f way = place - position_;
+  if (dot(way, way) * (metric_xx_ * metric_yy_ - metric_xy_ * metric_xy_) >= metric_xx_ + metric_yy_) return {};
   const Frame frame(this->normal());
-  const Vec3f d = frame.to_local(place - position_);
+  const Vec3f d = frame.to_local(way);
   const float across = metric_xx_ * d.x * d.x + 2 * metric_xy_ * d.x * d.y + metric_yy_ * d.y * d.y;
   const Vec3f n = frame.to_local(normal);
   const float off = std::min(std::fabs(d.z), std::fabs(d.z + (n.x * d.x + n.y * d.y) / 2));

@@ -29,10 +29,10 @@ constexpr float kLeastIrradiance = 0.1f * kPi;  // W m^-2
 
 class OvertureBuilder {
  public:
-  OvertureBuilder(const Scene& scene, const CausticMaps* caustics, std::uint64_t seed, const CacheQuality& quality, int threads,
-                  const std::atomic<bool>& cancelled)
-      : scene_(scene), seed_(seed), quality_(quality), threads_(threads), cancelled_(cancelled) {
-    for (int i = 0; i < threads; ++i) workers_.emplace_back(std::make_unique<Worker>(scene, caustics));
+  OvertureBuilder(const Scene& scene, const CausticMaps* caustics, const IrradianceCache* known, std::uint64_t seed,
+                  const CacheQuality& quality, int threads, const std::atomic<bool>& cancelled)
+      : scene_(scene), known_(known), seed_(seed), quality_(quality), threads_(threads), cancelled_(cancelled) {
+    for (int i = 0; i < threads; ++i) workers_.emplace_back(std::make_unique<Worker>(scene, caustics, known));
   }
 
   Overture build() {
@@ -47,8 +47,8 @@ class OvertureBuilder {
 
  private:
   struct Worker {
-    Worker(const Scene& scene, const CausticMaps* caustics)
-        : queries(scene.accelerator()), sampler(make_hemisphere_sampler(scene, caustics, queries)) {}
+    Worker(const Scene& scene, const CausticMaps* caustics, const IrradianceCache* known)
+        : queries(scene.accelerator()), sampler(make_hemisphere_sampler(scene, caustics, known, queries)) {}
     RayQueries queries;
     std::unique_ptr<HemisphereSampler> sampler;
   };
@@ -183,6 +183,8 @@ class OvertureBuilder {
         if (!(vertex.wo.z > 0) || vertex.bsdf->albedo(vertex.wo).is_black()) return look;
         const ReceivingPlace receiving = receiving_place(vertex, max_depth - depth);
         if (cache_.covers(receiving) || refused_.covers(receiving)) return look;
+        // Where a cache with a larger tolerance has no record this one has none.
+        if (known_ != nullptr && !known_->covers(receiving)) return look;
         look.uncovered =
             GatherPlace{vertex.point.position, vertex.frame, vertex.origin_towards(vertex.frame.n), depth, receiving.room, length};
         return look;
@@ -231,6 +233,7 @@ class OvertureBuilder {
   }
 
   const Scene& scene_;
+  const IrradianceCache* known_;
   std::uint64_t seed_;
   CacheQuality quality_;
   int threads_;
@@ -245,9 +248,9 @@ class OvertureBuilder {
 
 }  // namespace
 
-Overture make_overture(const Scene& scene, const CausticMaps* caustics, std::uint64_t seed, const CacheQuality& quality,
-                       int threads, const std::atomic<bool>& cancelled) {
-  return OvertureBuilder(scene, caustics, seed, quality, threads, cancelled).build();
+Overture make_overture(const Scene& scene, const CausticMaps* caustics, const IrradianceCache* known, std::uint64_t seed,
+                       const CacheQuality& quality, int threads, const std::atomic<bool>& cancelled) {
+  return OvertureBuilder(scene, caustics, known, seed, quality, threads, cancelled).build();
 }
 
 }  // namespace fluxfarm

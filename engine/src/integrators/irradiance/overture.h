@@ -24,8 +24,9 @@ struct Overture {
   std::uint64_t rays = 0;
 };
 
-// `caustics`: as for make_hemisphere_sampler(). Throws CancelledError soon after `cancelled` becomes true.
-Overture make_overture(const Scene& scene, const CausticMaps* caustics, std::uint64_t seed, const CacheQuality& quality,
-                       int threads, const std::atomic<bool>& cancelled);
+// `caustics`, `known`: as for make_hemisphere_sampler(); `known` is the cache of a larger tolerance. Throws CancelledError soon
+// after `cancelled` becomes true.
+Overture make_overture(const Scene& scene, const CausticMaps* caustics, const IrradianceCache* known, std::uint64_t seed,
+                       const CacheQuality& quality, int threads, const std::atomic<bool>& cancelled);
 
 }  // namespace fluxfarm
