@@ -102,6 +102,12 @@ Seen hidden_ceiling(Vec3f origin, Vec3f direction) {
   return smooth_ceiling(origin, direction);
 }
 
+// A wall at distance 1, brighter above, up to a ceiling at height 2. Light does not jump anywhere.
+Seen fading_wall(Vec3f origin, Vec3f direction) {
+  const float up = (2 - origin.z) / direction.z, across = (1 - origin.x) / direction.x;
+  return direction.x > 0 && across < up ? Seen{across, 0.2f + 0.4f * across * direction.z} : Seen{up, 1};
+}
+
 // By a fine grid, and differences of it.
 HemisphereIrradiance exact(const View& view) {
   constexpr float kStep = 0.05f;
@@ -130,6 +136,9 @@ void expect_derivatives(const View& view, int strata, double tolerance) {
 }
 
 TEST(HemisphereGrid, DerivativesUnderACeilingThatChanges) { expect_derivatives(smooth_ceiling, 64, 0.02); }
+
+// What is at the horizon moves past it: without that the gradient here would be a half, 0.06 of the irradiance less.
+TEST(HemisphereGrid, DerivativesBesideAWallThatFades) { expect_derivatives(fading_wall, 64, 0.01); }
 
 TEST(HemisphereGrid, DerivativesSeeWhatHides) {
   // The rim of the plate is known to half a stratum, on the side that hides.

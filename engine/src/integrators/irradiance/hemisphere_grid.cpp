@@ -117,7 +117,7 @@ TangentMatrix HemisphereGrid::clearance(float least_distance) const {
 }
 
 // The light between strata: each cell of four is two triangles, and what an edge adds to the one on its left it takes from the one
-// on its right. Beyond the outermost strata the light is taken to go on as it is there.
+// on its right. Beyond the outermost strata the light is taken to go on as it is there, down to the horizon.
 void HemisphereGrid::add_triangles(HemisphereIrradiance& sum) const {
   const auto n = static_cast<std::size_t>(strata_);
   std::vector<Corner> corners(lights_.size());
@@ -140,6 +140,19 @@ void HemisphereGrid::add_triangles(HemisphereIrradiance& sum) const {
       if (y > 0) add(corner, corner + 1, below[cell], above[cell - cells]);
       if (x > 0) add(corner, corner + n, below[cell - 1], above[cell]);
     }
+  }
+  // So the outermost triangles have a part of the horizon for an edge. It moves as the place does: it is what is below their outer
+  // edges, upright, so that the sides of what hangs there add nothing.
+  const auto end_at_horizon = [&](std::size_t first, std::size_t second, Triangle& triangle) {
+    const Vec3f a = corners[first].place, b = corners[second].place;
+    triangle.add(edge_irradiance({a.x, a.y, 0}, {b.x, b.y, 0}), 1);
+  };
+  for (std::size_t i = 0; i < cells; ++i) {
+    const std::size_t top = cells * n + i, left = i * n, last = (cells - 1) * cells;
+    end_at_horizon(i, i + 1, below[i]);
+    end_at_horizon(left + cells, left + cells + n, below[i * cells + cells - 1]);
+    end_at_horizon(top + 1, top, above[last + i]);
+    end_at_horizon(left + n, left, above[i * cells]);
   }
   const auto shine = [&](const Triangle& triangle, const std::array<std::size_t, 3>& at) {
     const std::array<float, 3> part = parts({corners[at[0]].distance, corners[at[1]].distance, corners[at[2]].distance});
