@@ -7,7 +7,7 @@ SHELL := bash
 VENV := .venv
 PYTHON := $(VENV)/bin/python
 PYTEST := $(PYTHON) -m pytest -c service/pyproject.toml --rootdir .
-CPP_FILES = $(shell git ls-files 'engine/*.cpp' 'engine/*.h' 'tests/engine/*.cpp' 'tests/engine/*.h')
+CPP_FILES = $(shell git ls-files 'engine/*.cpp' 'engine/*.h' 'tests/engine/*.cpp' 'tests/engine/*.h' 'tests/benchmarks/*.cpp' 'tests/benchmarks/*.h')
 
 # Build everything: .venv/bin/fluxfarm and .venv/bin/fluxfarm-engine exist afterwards.
 build: $(VENV)/.ready build/release/.configured
