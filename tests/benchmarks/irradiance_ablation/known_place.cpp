@@ -14,7 +14,7 @@ class Gatherer {
   Gatherer(const Scene& scene, int strata)
       : scene_(scene),
         queries_(scene.accelerator()),
-        sampler_(make_hemisphere_sampler(scene, nullptr, queries_)),
+        sampler_(make_hemisphere_sampler(scene, nullptr, nullptr, queries_)),
         grid_(strata, 1e3f * scene.radius()) {}
 
   std::array<float, 2> halves(const GatherPlace& place, std::uint64_t seed, std::size_t index) {

@@ -50,7 +50,7 @@ std::optional<CacheOfSize> shipped(const Scene& scene, const std::vector<GatherP
   const std::atomic<bool> never{false};
   const auto make = [&](float tolerance) {
     const CacheQuality quality{options.strata, tolerance, 2 * std::sqrt(tolerance)};
-    return make_overture(scene, nullptr, kRecordSeed, quality, options.threads, never).cache;
+    return make_overture(scene, nullptr, nullptr, kRecordSeed, quality, options.threads, never).cache;
   };
   // Less near than the search of the other methods: a try costs seconds.
   float low = 1e-3f, high = 10;

@@ -33,9 +33,9 @@ constexpr SampleRange cache_level(SampleRange samples) {
 inline CacheQuality quality_of(SampleRange level) {
   constexpr float kFirstSide = 16, kFirstTolerance = 0.15f;  // choices
   const float growth = static_cast<float>(level.end) / static_cast<float>(kFirstCacheLevel);
-  // Paths in proportion to the fourth root of samples, in strata of which each replicate has as many.
+  // Twice the paths for eight times the samples, in strata of which each replicate has as many.
   const auto replicates = static_cast<float>(kReplicates);
-  const int side = static_cast<int>(kReplicates) * static_cast<int>(std::lround(kFirstSide * std::pow(growth, 0.125f) / replicates));
+  const int side = static_cast<int>(kReplicates) * static_cast<int>(std::lround(kFirstSide * std::pow(growth, 1.0f / 6) / replicates));
   const float tolerance = kFirstTolerance / std::cbrt(growth);
   // A turn by t brings light of the horizon in and out: t^2 / 4 of all, if it is even.
   return {.strata = side, .tolerance = tolerance, .max_angle = 2 * std::sqrt(tolerance)};
