@@ -90,6 +90,18 @@ def test_prepared_passes_give_the_same_bits_whoever_makes_them(farms: list[Farm]
     assert 0 < report["error"]["bias"] < 0.2
 
 
+@pytest.mark.parametrize(("tile_size", "workers"), [(16, 4), (64, 1)])
+def test_irradiance_cache_gives_the_same_bits_for_any_tiles_and_workers(
+    farms: list[Farm], tmp_path: Path, tile_size: int, workers: int
+) -> None:
+    """Each worker makes the caches anew; tiles come to them in the order in which they are free."""
+    scene, method = ROOT / "scenes" / "cornell" / "scene.xml", "irradiance-cache"
+    options = ("--size", f"{SIDE}x{SIDE}", "--spp", SPP, "--seed", SEED, "--integrator", method)
+    alone = render_alone(scene, tmp_path / "alone.exr", *options)
+    farms.append(farm := Farm(tmp_path, tile_size=tile_size, workers=workers))
+    assert same_bits(alone, farm.layers(farm.submit(scene, integrator=method)))
+
+
 def test_pause_and_resume_give_the_same_bits(farms: list[Farm], tmp_path: Path, alone: Layers) -> None:
     farms.append(farm := Farm(tmp_path))
     job_id = farm.submit()
