@@ -20,7 +20,7 @@ import flat_scene
 import million
 import numpy as np
 
-from fluxfarm.api.chart import Curve, draw
+from fluxfarm.plot import Curve, Panel, draw
 
 ROOT = Path(__file__).parents[2]
 PEERS = {"PEER_PYTHON": "mitsuba", "CYCLES_PYTHON": "cycles", "LUXCORE_PYTHON": "luxcore"}
@@ -170,7 +170,7 @@ def plot(results: dict[str, list[Measured]]) -> str:
         for name, row in shown.items():
             points = list(zip(row.seconds, row.errors, strict=True))
             curves.append(Curve(points, f"{scene}: {row.name}", COLOURS[scene], DASHES[name]))
-    return draw(curves, "time of rendering, seconds", "relMSE")
+    return draw([Panel(curves, "time of rendering, seconds", "relMSE")])
 
 
 def compare(folder: Path, render: Render) -> dict[str, list[Measured]]:

@@ -49,10 +49,11 @@ THIRD_PARTY = {
 # Each room of the service and the rooms that it may use; `errors` belongs to all.
 SERVICE = {
     "domain": set(),
+    "plot": set(),
     "ports": {"domain"},
     "orchestrator": {"domain", "ports"},
     "adapters": {"domain", "ports", "settings"},
-    "api": {"domain", "ports", "orchestrator", "settings"},
+    "api": {"domain", "ports", "orchestrator", "settings", "plot"},
 }
 GENERATED_PROTOCOL = "fluxfarm.adapters.protocol"
 CODEC = "adapters/engine/codec.py"

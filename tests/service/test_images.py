@@ -88,6 +88,8 @@ def test_report_and_chart_tell_the_error_over_time(client: Client) -> None:
     chart = client.http.get(f"/v1/jobs/{job_id}/chart.svg")
     assert chart.headers["content-type"].startswith("image/svg+xml")
     assert chart.text.count("<circle") == len(spp) - 1, "one sample has no error"
+    assert "goal: error 0.2" in chart.text
+    assert "predicted at" in chart.text
 
 
 def test_system_workers_health_and_metrics_answer(client: Client) -> None:

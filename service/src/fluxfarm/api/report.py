@@ -5,14 +5,15 @@ from typing import Any
 from fastapi import APIRouter, Response
 from pydantic import BaseModel, Field
 
-from fluxfarm.api.chart import Curve, draw
 from fluxfarm.api.deps import Farm, JobId, Services
 from fluxfarm.api.problems import problem_responses
 from fluxfarm.api.schemas import RevisionOut, revision_out
 from fluxfarm.domain.events import Event, EventKind
 from fluxfarm.domain.job import JobState
+from fluxfarm.domain.prediction import predicted_path
 from fluxfarm.domain.records import JobRecord, Revision
 from fluxfarm.errors import NotYetThere
+from fluxfarm.plot import Curve, Panel, draw
 
 router = APIRouter(tags=["reports"])
 
@@ -90,13 +91,33 @@ async def report(job_id: JobId, farm: Farm) -> ReportOut:
     response_class=Response,
 )
 async def chart(job_id: JobId, farm: Farm) -> Response:
-    """The estimated relative error over the time in RUNNING, both axes logarithmic."""
-    await farm.ledger.job(job_id)
-    points = chart_points(await farm.ledger.revisions(job_id))
+    """The estimated relative error over the time in RUNNING, both axes logarithmic; dashed, the end that was
+    predicted (of a job that goes on by its newest revision, else by the first with a fifth of its samples); dotted, an
+    error goal."""
+    record = await farm.ledger.job(job_id)
+    revisions = await farm.ledger.revisions(job_id)
+    points = chart_points(revisions)
     if len(points) < 2:
         raise NotYetThere(f"job {job_id}: {len(points)} revision(s) with an error, a chart needs two")
-    svg = draw([Curve(points)], "time in RUNNING, seconds", "estimated relative error (noise)")
+    curves = job_curves(points, predicted_path(record, revisions), record.request.goal.rel_error)
+    svg = draw([Panel(curves, "time in RUNNING, seconds", "estimated relative error (noise)")])
     return Response(svg, media_type="image/svg+xml")
+
+
+def job_curves(
+    points: list[tuple[float, float]], predicted: list[tuple[float, float]], rel_error: float | None
+) -> list[Curve]:
+    """The job's own curve, its prediction if there is one, and its error goal if it has one."""
+    curves = [Curve(points, "this job")]
+    if predicted:
+        (start, _), (end, error) = predicted
+        name = f"predicted at {start:.3g} s: error {error:.2g} after {end:.3g} s"
+        curves.append(Curve(predicted, name, "#c40", "6 4", dots=False, diamonds=predicted[1:]))
+    if rel_error is not None:
+        seconds = [x for curve in curves for x, _ in curve.points]
+        goal = [(min(seconds), rel_error), (max(seconds), rel_error)]
+        curves.append(Curve(goal, f"goal: error {rel_error:g}", "#555", "2 4", dots=False))
+    return curves
 
 
 def chart_points(revisions: list[Revision]) -> list[tuple[float, float]]:
