@@ -17,6 +17,8 @@ import numpy as np
 import OpenEXR
 import peers
 
+from fluxfarm.peers.running import run_peer
+
 ENGINE = peers.ROOT / ".venv" / "bin" / "fluxfarm-engine"
 REFERENCE_SPP = 2048
 CAUSTIC_SHARE = 0.5
@@ -47,12 +49,9 @@ def render(scene: Path, out: Path, method: str, *goal: object) -> tuple[np.ndarr
 
 
 def of_luxcore(python: str, flat: Path, seconds: float) -> list[tuple[str, np.ndarray, float]]:
-    out, program = flat.with_name("luxcore.npz"), Path(__file__).with_name("luxcore_peer.py")
-    command = (python, program, flat, peers.SIDE, peers.DEPTH, seconds, out, "caustics")
-    subprocess.run([str(part) for part in command], check=True, capture_output=True)
-    with np.load(out) as data:
-        runs = zip(data["names"].tolist(), data["images"][:, 0], data["seconds"][:, 0], strict=True)
-        return [(name, image.astype(float), float(s)) for name, image, s in runs]
+    size, out = (peers.SIDE, peers.SIDE), flat.with_name("luxcore.npz")
+    variants = run_peer("luxcore", python, flat, size, peers.DEPTH, [seconds], out, "caustics")
+    return [(runs.name, runs.images[0], float(runs.seconds[0])) for runs in variants]
 
 
 def main() -> None:

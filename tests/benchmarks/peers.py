@@ -11,19 +11,18 @@ Cycles' adaptive sampling is off: it ends pixels by their own samples, which bia
 import os
 import re
 import shutil
-import subprocess
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
-import flat_scene
 import million
 import numpy as np
 
+from fluxfarm.peers import flat_scene
+from fluxfarm.peers.running import PYTHONS, PeerFailed, reads_scene, run_peer
 from fluxfarm.plot import Curve, Panel, draw
 
 ROOT = Path(__file__).parents[2]
-PEERS = {"PEER_PYTHON": "mitsuba", "CYCLES_PYTHON": "cycles", "LUXCORE_PYTHON": "luxcore"}
 OURS = "Fluxfarm"  # and how it was asked
 SIDE = 256
 DEPTH = 16
@@ -79,7 +78,6 @@ def flat_file(scene: Path) -> Path:
 
 
 def measured(name: str, images: np.ndarray, seconds: np.ndarray, reference: np.ndarray) -> Measured:
-    images = images.astype(np.float64)
     mean = np.average(images, axis=0, weights=COUNTS)
     ratio = mean.mean((0, 1)) / reference.mean((0, 1))
     error = (mean - reference).std((0, 1)) / SIDE / reference.mean((0, 1))
@@ -87,16 +85,13 @@ def measured(name: str, images: np.ndarray, seconds: np.ndarray, reference: np.n
     return Measured(name, seconds.tolist(), [rel_mse(image, reference) for image in images], ratio.tolist(), same)
 
 
-def of_peer(python: str, script: str, scene: Path, reference: np.ndarray) -> list[Measured]:
-    given, out = scene if script == "mitsuba" else flat_file(scene), scene.with_name(f"{script}.npz")
-    program = Path(__file__).with_name(f"{script}_peer.py")
-    arguments = [str(SIDE), str(DEPTH), ",".join(map(str, COUNTS)), out]
-    done = subprocess.run([python, program, given, *arguments], capture_output=True, text=True, check=False)
-    if done.returncode != 0:
-        raise SystemExit(f"{program.name} {given} failed:\n{done.stderr[-2000:]}")
-    with np.load(out) as data:
-        rows = zip(data["names"].tolist(), data["images"], data["seconds"], strict=True)
-        return [measured(name, images, seconds, reference) for name, images, seconds in rows]
+def of_peer(python: str, peer: str, scene: Path, reference: np.ndarray) -> list[Measured]:
+    given, out = scene if reads_scene(peer) else flat_file(scene), scene.with_name(f"{peer}.npz")
+    try:
+        variants = run_peer(peer, python, given, (SIDE, SIDE), DEPTH, list(COUNTS), out)
+    except PeerFailed as error:
+        raise SystemExit(f"{peer} on {given} failed:\n{error}") from None
+    return [measured(runs.name, runs.images, runs.seconds, reference) for runs in variants]
 
 
 def of_scene(scene: Path, render: Render, pythons: dict[str, str]) -> list[Measured]:
@@ -110,7 +105,7 @@ def of_scene(scene: Path, render: Render, pythons: dict[str, str]) -> list[Measu
 
     equal = ours("equal samples", [("--spp", spp) for spp in COUNTS])
     by_goal = ours("error goal", [("--rel-error", error**0.5) for error in equal.errors])
-    peers = [row for script, python in pythons.items() for row in of_peer(python, script, scene, reference)]
+    peers = [row for peer, python in pythons.items() for row in of_peer(python, peer, scene, reference)]
     return [by_goal, equal, *peers]
 
 
@@ -175,9 +170,9 @@ def plot(results: dict[str, list[Measured]]) -> str:
 
 def compare(folder: Path, render: Render) -> dict[str, list[Measured]]:
     """Measure all scenes; write peers.md and peers.svg into `folder`."""
-    pythons = {script: os.environ[name] for name, script in PEERS.items() if name in os.environ}
-    missing = [(name, script) for name, script in PEERS.items() if script not in pythons]
-    left_out = [f"- left out: {script}, as {name} names no Python that has it" for name, script in missing]
+    pythons = {peer: os.environ[name] for peer, name in PYTHONS.items() if name in os.environ}
+    missing = [(name, peer) for peer, name in PYTHONS.items() if peer not in pythons]
+    left_out = [f"- left out: {peer}, as {name} names no Python that has it" for name, peer in missing]
     work = folder / "peers"
     results = {name: of_scene(scene, render, pythons) for name, scene in write_scenes(work).items()}
     shutil.rmtree(work)

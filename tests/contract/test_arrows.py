@@ -54,6 +54,7 @@ SERVICE = {
     "orchestrator": {"domain", "ports"},
     "adapters": {"domain", "ports", "settings"},
     "api": {"domain", "ports", "orchestrator", "settings", "plot"},
+    "peers": set(),
 }
 GENERATED_PROTOCOL = "fluxfarm.adapters.protocol"
 CODEC = "adapters/engine/codec.py"

@@ -22,12 +22,17 @@ import argparse
 import json
 import os
 import re
+import sys
 import tempfile
 from pathlib import Path
 
 import numpy as np
 import outside_variants
-from sphere_meshes import icosphere, latitude_longitude_sphere
+from sphere_meshes import latitude_longitude_sphere
+
+# A module of the package, which the Python that has Mitsuba lacks.
+sys.path.insert(0, str(Path(__file__).parents[2] / "service" / "src" / "fluxfarm" / "peers"))
+from icosphere import icosphere
 
 BLOCK = 16
 

@@ -7,15 +7,13 @@ and as a mesh.
 """
 
 import json
-import sys
 import xml.etree.ElementTree as ET
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-sys.path.insert(0, str(Path(__file__).parents[1] / "render"))
-from sphere_meshes import icosphere
+from fluxfarm.peers.icosphere import icosphere
 
 SQUARE = np.array([[-1, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0]], float)
 CUBE = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)], float)
@@ -74,7 +72,7 @@ def smooth_normals(vertices: np.ndarray, faces: np.ndarray) -> np.ndarray:
     for corner in range(3):
         angle = np.arccos(np.clip(-np.sum(edges[:, corner] * edges[:, corner - 1], 1), -1, 1))
         np.add.at(total, faces[:, corner], angle[:, None] * face_normals)
-    return total / np.linalg.norm(total, axis=1, keepdims=True)
+    return np.asarray(total / np.linalg.norm(total, axis=1, keepdims=True))
 
 
 def read_ply(path: Path) -> tuple[np.ndarray, np.ndarray]:
@@ -156,4 +154,4 @@ def write(scene: Path, out: Path) -> None:
     sensor = root.find("sensor")
     assert sensor is not None
     head = {"camera": camera(sensor), "sky": [0, 0, 0] if sky is None else colour(sky, "radiance"), "shapes": shapes}
-    np.savez(out, head=json.dumps(head), **arrays)
+    np.savez(out, allow_pickle=False, head=json.dumps(head), **arrays)

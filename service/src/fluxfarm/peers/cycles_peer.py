@@ -1,6 +1,6 @@
-"""Cycles on a flat scene, run by peers.py in a Python that has bpy.
+"""Cycles on a flat scene, in a Python that has bpy.
 
-    cycles_peer.py FLAT.npz SIDE DEPTH SPP,SPP,... OUT.npz
+    cycles_peer.py FLAT.npz WIDTHxHEIGHT DEPTH SPP,SPP,... OUT.npz
 
 Rectangles and balls that shine become Cycles' own area and point lights, which it samples best. Nothing that biases: no
 clamping, no light threshold, no filter on glossy, caustics on, no adaptive sampling, no denoising.
@@ -91,10 +91,11 @@ def add_light(name: str, shape: dict[str, Any]) -> None:
 def lamp_body(shape: dict[str, Any], vertices: np.ndarray) -> np.ndarray:
     """The lamp's mesh a little behind the light: Cycles' lights let other light pass, ours stop it."""
     if "radius" in shape:
-        return shape["centre"] + 0.998 * (vertices - shape["centre"])
+        centre = np.array(shape["centre"])
+        return np.asarray(centre + 0.998 * (vertices - centre))
     x_axis, y_axis = np.array(shape["to_world"])[:3, 0], np.array(shape["to_world"])[:3, 1]
     facing = np.cross(x_axis, y_axis)
-    return vertices - 1e-4 * np.linalg.norm(x_axis) * facing / np.linalg.norm(facing)
+    return np.asarray(vertices - 1e-4 * np.linalg.norm(x_axis) * facing / np.linalg.norm(facing))
 
 
 def add_camera(camera: dict[str, Any]) -> None:
@@ -119,10 +120,10 @@ def add_sky(radiance: list[float]) -> None:
     bpy.context.scene.world = world
 
 
-def settings(side: int, depth: int) -> None:
+def settings(width: int, height: int, depth: int) -> None:
     scene = bpy.context.scene
     scene.render.engine = "CYCLES"
-    scene.render.resolution_x = scene.render.resolution_y = side
+    scene.render.resolution_x, scene.render.resolution_y = width, height
     scene.render.resolution_percentage = 100
     scene.render.threads_mode, scene.render.threads = "FIXED", THREADS
     scene.render.image_settings.file_format = "OPEN_EXR"
@@ -138,7 +139,7 @@ def settings(side: int, depth: int) -> None:
 
 
 def render(spp: int, seed: int, folder: Path) -> tuple[np.ndarray, float]:
-    """(side, side, 3) and the seconds of rendering without synchronisation, as Cycles writes them into its file."""
+    """(height, width, 3) and the seconds of rendering without synchronisation, as Cycles writes them into its file."""
     scene = bpy.context.scene
     scene.cycles.samples, scene.cycles.seed = spp, seed
     scene.render.filepath = str(folder / "image.exr")
@@ -158,7 +159,8 @@ def render(spp: int, seed: int, folder: Path) -> tuple[np.ndarray, float]:
 
 
 def main() -> None:
-    flat, side, depth, counts, out = sys.argv[1:]
+    flat, size, depth, counts, out = sys.argv[1:]
+    width, height = map(int, size.split("x"))
     bpy.ops.wm.read_factory_settings(use_empty=True)
     with np.load(flat) as arrays:
         head = json.loads(str(arrays["head"]))
@@ -170,7 +172,7 @@ def main() -> None:
             add_mesh(f"shape {i}", shape["material"], vertices, faces, normals)
     add_camera(head["camera"])
     add_sky(head["sky"])
-    settings(int(side), int(depth))
+    settings(width, height, int(depth))
     with tempfile.TemporaryDirectory() as folder:
         runs = [render(int(spp), seed, Path(folder)) for seed, spp in enumerate(counts.split(","))]
     images, seconds = zip(*runs, strict=True)

@@ -1,7 +1,7 @@
-"""LuxCore on a flat scene, run by peers.py in a Python that has pyluxcore.
+"""LuxCore on a flat scene, in a Python that has pyluxcore.
 
-    luxcore_peer.py FLAT.npz SIDE DEPTH SPP,SPP,... OUT.npz
-    luxcore_peer.py FLAT.npz SIDE DEPTH SECONDS OUT.npz caustics
+    luxcore_peer.py FLAT.npz WIDTHxHEIGHT DEPTH SPP,SPP,... OUT.npz
+    luxcore_peer.py FLAT.npz WIDTHxHEIGHT DEPTH SECONDS OUT.npz caustics
 
 Its path tracer for the CPU with the Sobol sampler; no clamping, no denoising. The second form renders once with the
 caustic cache of PhotonGI and once without, for so long each, photons included. Lights are triangles: its own round ones
@@ -54,7 +54,7 @@ def properties(values: dict[str, Any]) -> pyluxcore.Properties:
     return props
 
 
-def scene_of(flat: str, side: int) -> pyluxcore.Scene:
+def scene_of(flat: str, width: int, height: int) -> pyluxcore.Scene:
     scene = pyluxcore.Scene()
     with np.load(flat) as arrays:
         head = json.loads(str(arrays["head"]))
@@ -66,8 +66,8 @@ def scene_of(flat: str, side: int) -> pyluxcore.Scene:
             "scene.camera.up": camera["up"],
             "scene.camera.fieldofview": camera["fov"],
             "scene.camera.autofocus.enable": False,
-            # Film rows run from the bottom in [0, side), the camera's from the top in (-1, side - 1]: a pixel's shift.
-            "scene.camera.screenwindow": [-1, 1, -1 - 2 / side, 1 - 2 / side],
+            # Film rows run from the bottom in [0, height), the camera's from the top in (-1, height - 1]: a shift.
+            "scene.camera.screenwindow": [-1, 1, (-height - 2) / width, (height - 2) / width],
         }
         if any(head["sky"]):
             values |= {"scene.lights.sky.type": "constantinfinite", "scene.lights.sky.color": head["sky"]}
@@ -98,16 +98,22 @@ CAUSTIC_CACHE = {
 
 
 def render(
-    scene: pyluxcore.Scene, side: int, depth: int, seed: int, halt: dict[str, float], more: dict[str, Any] | None = None
+    scene: pyluxcore.Scene,
+    size: tuple[int, int],
+    depth: int,
+    seed: int,
+    halt: dict[str, float],
+    more: dict[str, Any] | None = None,
 ) -> tuple[np.ndarray, float]:
-    """(side, side, 3) and the seconds from the start to the last sample."""
+    """(height, width, 3) and the seconds from the start to the last sample."""
+    width, height = size
     values = {
         "renderengine.type": "PATHCPU",
         "renderengine.seed": seed + 1,
         "sampler.type": "SOBOL",
         "native.threads.count": THREADS,
-        "film.width": side,
-        "film.height": side,
+        "film.width": width,
+        "film.height": height,
         "film.filter.type": "BOX",
         "film.filter.width": 0.5,
         "path.pathdepth.total": depth - 1,
@@ -127,23 +133,25 @@ def render(
         time.sleep(POLL_S)
         session.UpdateStats()
     seconds = time.perf_counter() - start
-    pixels = np.empty((side, side, 3), np.float32)
+    pixels = np.empty((height, width, 3), np.float32)
     session.GetFilm().GetOutputFloat(pyluxcore.FilmOutputType.RGB, pixels)
     session.Stop()
     return pixels[::-1].copy(), seconds
 
 
 def main() -> None:
-    flat, side, depth, much, out, *caustics = sys.argv[1:]
+    flat, size_text, depth, much, out, *caustics = sys.argv[1:]
+    width, height = map(int, size_text.split("x"))
+    size = (width, height)
     pyluxcore.Init(lambda message: None)
-    scene = scene_of(flat, int(side))
+    scene = scene_of(flat, width, height)
     if caustics:
         halt = {"batch.halttime": float(much)}
-        runs = [render(scene, int(side), int(depth), 0, halt, cache) for cache in (CAUSTIC_CACHE, {})]
+        runs = [render(scene, size, int(depth), 0, halt, cache) for cache in (CAUSTIC_CACHE, {})]
         names, shape = ["LuxCore, PhotonGI", "LuxCore, path"], (2, 1)
     else:
         counts = enumerate(much.split(","))
-        runs = [render(scene, int(side), int(depth), seed, {"batch.haltspp": int(spp)}) for seed, spp in counts]
+        runs = [render(scene, size, int(depth), seed, {"batch.haltspp": int(spp)}) for seed, spp in counts]
         names, shape = ["LuxCore"], (1, len(runs))
     images = np.stack([image for image, _ in runs])
     seconds = np.array([s for _, s in runs])
