@@ -8,6 +8,7 @@ VENV := .venv
 PYTHON := $(VENV)/bin/python
 PYTEST := $(PYTHON) -m pytest -c service/pyproject.toml --rootdir .
 CPP_FILES = $(shell git ls-files 'engine/*.cpp' 'engine/*.h' 'tests/engine/*.cpp' 'tests/engine/*.h' 'tests/benchmarks/*.cpp' 'tests/benchmarks/*.h')
+SCENES_DATA := $(or $(FLUXFARM_SCENES_DATA),../shared/scenes-data)
 
 # Build everything: .venv/bin/fluxfarm and .venv/bin/fluxfarm-engine exist afterwards.
 build: $(VENV)/.ready build/release/.configured
@@ -51,9 +52,12 @@ format: $(VENV)/.ready
 bench: build
 	$(PYTHON) tests/benchmarks/bench.py --out out/bench.json
 
-# Estimated error over time of each authored scene, an SVG each.
+# Speed against accuracy: true error over time of each method and peer on our scenes, and on outside ones where they are:
+# out/chart/index.html. CHART has the options; those of the chart that is kept are in docs/chart/README.md.
+CHART := --seconds 8 --size 256x256 --reference-spp 2048
+CHART_SCENES = $(wildcard scenes/*/scene.xml) tests/benchmarks/plates.xml $(wildcard $(foreach end,xml glb,$(SCENES_DATA)/*/scene.$(end)))
 chart: build
-	$(PYTHON) tests/benchmarks/chart.py --out out
+	$(VENV)/bin/fluxfarm chart $(CHART_SCENES) --peers mitsuba,cycles,luxcore $(CHART)
 
 # The slow statistical and fault suites.
 stability: build

@@ -1,9 +1,11 @@
 """The service's README names everything that its code offers."""
 
+import inspect
 from dataclasses import fields
 from pathlib import Path
 
 from fluxfarm import errors
+from fluxfarm.cli.commands import chart
 from fluxfarm.cli.exits import EXIT_SENTENCES
 from fluxfarm.domain.events import EventKind
 from fluxfarm.domain.job import STATE_SENTENCES
@@ -44,3 +46,9 @@ def test_every_error_code_is_explained() -> None:
 def test_every_exit_code_is_explained() -> None:
     for code, sentence in EXIT_SENTENCES.items():
         assert f"| {code.value} | {sentence} |" in README, code
+
+
+def test_every_option_of_chart_is_explained() -> None:
+    for parameter in inspect.signature(chart).parameters.values():
+        for declared in parameter.annotation.__metadata__[0].param_decls or ():
+            assert f"`{declared}`" in README, declared

@@ -18,6 +18,7 @@
     +-- TooLarge                  413 too-large
     +-- EngineTrouble             503 engine-trouble
     +-- DiskFull                  507 disk-full
+    +-- ChartError                (ends `fluxfarm chart`)
     +-- StartError                (ends the program before it serves)
         +-- DataFolderInUse
         +-- StoreDamaged
@@ -167,6 +168,12 @@ class DiskFull(FarmError):
 
     status = 507
     code = "disk-full"
+
+
+class ChartError(FarmError):
+    """`fluxfarm chart` cannot measure this; the text says what to mend."""
+
+    code = "chart"
 
 
 class StartError(FarmError):

@@ -208,6 +208,34 @@ def doctor() -> None:
         raise CommandError(Exit.UNREACHABLE, "a service cannot run here; see the lines marked FAILED")
 
 
+@app.command()
+def chart(
+    scenes: Annotated[
+        list[str], typer.Argument(metavar="SCENE...", help="Scene files (.xml, .json) or built-in names.")
+    ],
+    integrators: Annotated[
+        str, typer.Option("--integrators", help="Methods, with commas between.")
+    ] = "path,photon,photon-progressive,irradiance-cache",
+    peers: Annotated[
+        str, typer.Option("--peers", help="Other renderers: mitsuba, cycles, luxcore; see tests/benchmarks/README.md.")
+    ] = "",
+    seconds: Annotated[
+        float, typer.Option("--seconds", help="Longest budget of a run; four shorter ones halve it.")
+    ] = 8,
+    seeds: Annotated[int, typer.Option("--seeds", help="Runs of each budget.")] = 3,
+    size: SizeOption = None,
+    reference: Annotated[
+        Path | None, typer.Option("--reference", help="OpenEXR image to compare with; default: a long run, kept.")
+    ] = None,
+    reference_spp: Annotated[int, typer.Option("--reference-spp", help="Samples per pixel of that long run.")] = 4096,
+    out: Annotated[Path, typer.Option("-o", "--out", help="Folder to write to.")] = Path("out/chart"),
+) -> None:
+    """Chart errors over seconds of rendering for methods and other renderers: SVG, PNG, JSON and a page, index.html."""
+    from fluxfarm.cli.charting import chart_scenes
+
+    chart_scenes(scenes, integrators, peers, seconds, seeds, size, reference, reference_spp, out)
+
+
 def _changed(settings: Settings, **options: Any) -> Settings:
     """The settings with the options that were given; checked like variables of the environment."""
     given = {f"{PREFIX}{name.upper()}": str(value) for name, value in options.items() if value is not None}

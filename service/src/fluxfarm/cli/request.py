@@ -58,12 +58,18 @@ def option_members(options: JobOptions) -> dict[str, Any]:
     if options.integrator:
         body["integrator"] = options.integrator
     if options.size:
-        width, height = _whole_numbers("--size", options.size, "x", ("WIDTH", "HEIGHT"))
+        width, height = parse_size(options.size)
         body["size"] = {"width": width, "height": height}
     if options.crop:
         x, y, width, height = _whole_numbers("--crop", options.crop, ",", ("X", "Y", "WIDTH", "HEIGHT"))
         body["crop"] = {"x": x, "y": y, "width": width, "height": height}
     return body
+
+
+def parse_size(text: str) -> tuple[int, int]:
+    """Width and height in pixels of a --size."""
+    width, height = _whole_numbers("--size", text, "x", ("WIDTH", "HEIGHT"))
+    return width, height
 
 
 def _whole_numbers(option: str, text: str, separator: str, names: tuple[str, ...]) -> list[int]:
