@@ -18,8 +18,8 @@ from pathlib import Path
 import million
 import numpy as np
 
-from fluxfarm.peers import flat_scene
-from fluxfarm.peers.running import PYTHONS, PeerFailed, reads_scene, run_peer
+from fluxfarm.peers import PYTHONS, flat_scene
+from fluxfarm.peers.running import PeerFailed, reads_scene, run_peer
 from fluxfarm.plot import Curve, Panel, draw
 
 ROOT = Path(__file__).parents[2]

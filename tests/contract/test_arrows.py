@@ -55,7 +55,7 @@ SERVICE = {
     "adapters": {"domain", "ports", "settings"},
     "api": {"domain", "ports", "orchestrator", "settings", "plot"},
     "peers": set(),
-    "chart": {"plot", "settings", "peers"},
+    "chart": {"plot", "peers"},
 }
 GENERATED_PROTOCOL = "fluxfarm.adapters.protocol"
 CODEC = "adapters/engine/codec.py"

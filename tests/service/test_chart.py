@@ -227,5 +227,18 @@ def test_bad_input_is_one_clear_error(arguments: list[str], words: str, tmp_path
     assert not (tmp_path / "out").exists()
 
 
+def test_missing_packages_are_named(tmp_path: Path) -> None:
+    """As they are an extra, nothing of them may be imported before they are looked for."""
+    code = """import sys
+from fluxfarm.cli import charting, main
+assert 'numpy' not in sys.modules
+charting.PACKAGES['no_such_module'] = 'no-such-package'
+main()"""
+    command = [sys.executable, "-c", code, "chart", "cornell", "-o", str(tmp_path / "out")]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=60, check=False)
+    assert done.returncode == 3, done.stderr
+    assert "needs no-such-package: install the extra fluxfarm[chart]" in done.stderr
+
+
 def test_numbers_that_are_not_finite_have_no_slope() -> None:
     assert slope([(1.0, math.nan), (2.0, 0.1)]) is None

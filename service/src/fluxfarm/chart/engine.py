@@ -41,12 +41,17 @@ class Engine:
     program: Path
     folder: Path
 
+    @property
+    def image(self) -> Path:
+        """The picture of the newest run."""
+        return self.folder / "run.exr"
+
     def render(self, scene: Path, size: tuple[int, int] | None, *options: object) -> Run:
         """Raises Refused with the engine's own words."""
-        image, report = self.folder / "run.exr", self.folder / "run.json"
-        output = ("-o", image, "--report", report, "--threads", THREADS)
+        report = self.folder / "run.json"
+        output = ("-o", self.image, "--report", report, "--threads", THREADS)
         self._run("render", scene, *output, *_size(size), *options)
-        return Run(read_exr(image), json.loads(report.read_text()))
+        return Run(read_exr(self.image), json.loads(report.read_text()))
 
     def embree_rays_per_second(self, scene: Path, size: tuple[int, int]) -> float:
         """Rays that bare Embree traces a second, of those that path tracing asks for."""

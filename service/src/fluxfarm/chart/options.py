@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from fluxfarm.errors import ChartError
-from fluxfarm.peers.running import PYTHONS
+from fluxfarm.peers import PYTHONS
 
 METHODS = ("path", "photon", "photon-progressive", "irradiance-cache")
 # Each half of the next.

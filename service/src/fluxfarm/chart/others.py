@@ -11,8 +11,8 @@ from fluxfarm.chart.images import Image
 from fluxfarm.chart.options import ChartOptions
 from fluxfarm.chart.scenes import ChartScene, path_depth
 from fluxfarm.chart.series import Point, Series
-from fluxfarm.peers import flat_scene
-from fluxfarm.peers.running import PYTHONS, PeerFailed, PeerRuns, reads_scene, run_peer
+from fluxfarm.peers import PYTHONS, flat_scene
+from fluxfarm.peers.running import PeerFailed, PeerRuns, reads_scene, run_peer
 
 PILOT = (4, 16)  # samples a pixel
 MOST_SAMPLES = 1 << 16

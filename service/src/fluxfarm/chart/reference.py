@@ -2,6 +2,7 @@
 
 import hashlib
 import json
+import shutil
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -45,7 +46,7 @@ def find_reference(scene: ChartScene, engine: Engine, options: ChartOptions) -> 
         folder.mkdir(parents=True, exist_ok=True)
         goal = ("--integrator", METHOD, "--spp", options.reference_spp, "--seed", SEED)
         run = engine.render(scene.path, options.size, *goal)
-        (engine.folder / "run.exr").replace(image)
+        shutil.move(engine.image, image)
         told.write_text(json.dumps(run.report, indent=2) + "\n")
     report = json.loads(told.read_text())
     origin = f"{METHOD}, {options.reference_spp} samples a pixel, {run_seconds(report):.0f} s"

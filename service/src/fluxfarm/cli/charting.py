@@ -10,7 +10,7 @@ from fluxfarm.chart.scenes import ChartScene
 from fluxfarm.cli.bundle import collect
 from fluxfarm.cli.exits import CommandError, Exit
 from fluxfarm.cli.request import find_scene, parse_size
-from fluxfarm.peers.running import PYTHONS
+from fluxfarm.peers import PYTHONS
 from fluxfarm.settings import Settings, engine_program, from_environment, scenes_folder
 
 PACKAGES = {"numpy": "numpy", "OpenEXR": "OpenEXR", "flip_evaluator": "flip-evaluator", "resvg_py": "resvg_py"}

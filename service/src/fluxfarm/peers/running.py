@@ -1,9 +1,8 @@
 """Runs a peer's script in the Python that has it.
 
-Each peer is measured where a variable of the environment names such a Python. A script takes a scene, the size, the
-depth and numbers of samples a pixel, and renders a picture for each number, with seeds 0, 1, ...; it writes an .npz of
-`names` (its variants), `images` (variants, numbers, height, width, 3) and `seconds` of rendering alone (variants,
-numbers).
+A script takes a scene, the size, the depth and numbers of samples a pixel, and renders a picture for each number, with
+seeds 0, 1, ...; it writes an .npz of `names` (its variants), `images` (variants, numbers, height, width, 3) and `seconds`
+of rendering alone (variants, numbers).
 """
 
 import subprocess
@@ -13,7 +12,6 @@ from pathlib import Path
 
 import numpy as np
 
-PYTHONS = {"mitsuba": "PEER_PYTHON", "cycles": "CYCLES_PYTHON", "luxcore": "LUXCORE_PYTHON"}
 LAST_WORDS = 2000
 
 
