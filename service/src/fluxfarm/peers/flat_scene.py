@@ -41,9 +41,12 @@ def colour(element: ET.Element, name: str, default: str = "0.5") -> list[float]:
 
 
 def matrix(shape: ET.Element) -> np.ndarray:
-    """(4, 4) of the shape's to_world."""
+    """(4, 4) of the shape's or camera's to_world."""
     total = np.eye(4)
     for step in shape.findall("transform/*"):
+        if step.tag == "matrix":
+            total = np.array(numbers(step.attrib["value"])).reshape(4, 4) @ total
+            continue
         given = {axis: float(step.get(axis, step.get("value", 1 if step.tag == "scale" else 0))) for axis in "xyz"}
         one = np.eye(4)
         if step.tag == "scale":
@@ -127,9 +130,12 @@ def material(bsdf: ET.Element) -> dict[str, Any]:
 
 def camera(sensor: ET.Element) -> dict[str, Any]:
     look = sensor.find("transform/lookat")
-    if look is None:
-        raise ValueError("the camera needs a <lookat>")
-    return {"fov": float(parameter(sensor, "fov")), **{name: numbers(value) for name, value in look.attrib.items()}}
+    if look is not None:
+        view = {name: numbers(value) for name, value in look.attrib.items()}
+    else:
+        _, up, ahead, origin = matrix(sensor)[:3].T
+        view = {"origin": origin.tolist(), "target": (origin + ahead).tolist(), "up": up.tolist()}
+    return {"fov": float(parameter(sensor, "fov")), **view}
 
 
 def write(scene: Path, out: Path) -> None:

@@ -1,8 +1,8 @@
 """Runs a peer's script in the Python that has it.
 
 A script takes a scene, the size, the depth and numbers of samples a pixel, and renders a picture for each number, with
-seeds 0, 1, ...; it writes an .npz of `names` (its variants), `images` (variants, numbers, height, width, 3) and `seconds`
-of rendering alone (variants, numbers).
+seeds 0, 1, ...; it writes an .npz of `names` (its variants), `images` (variants, numbers, height, width, 3) and
+`seconds` of rendering alone (variants, numbers).
 """
 
 import subprocess
