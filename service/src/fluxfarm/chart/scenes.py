@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 # Where a scene leaves paths unbounded, and the other renderer has to be told a number.
-LONGEST_PATH = 64
+LONGEST_PATH = 1024
 
 
 @dataclass(frozen=True, slots=True)
