@@ -7,8 +7,12 @@
 #include <cstring>
 #include <fstream>
 #include <limits>
+#include <numeric>
 
+#include "film/error_shares.h"
+#include "film/tile_grid.h"
 #include "support/error.h"
+#include "support/parallel.h"
 
 namespace fluxfarm {
 namespace {
@@ -21,6 +25,21 @@ constexpr float kNoDepth = 1e10f;
 // Samples 0 .. n-1 fall round-robin into the replicates.
 std::uint32_t replicate_samples(std::uint32_t samples, std::uint32_t replicate) {
   return (samples + kFilmReplicates - 1 - replicate) / kFilmReplicates;
+}
+
+// Of relMSE, over the pixels of the crop together.
+double noise_share(const Film& film, int threads) {
+  constexpr int kTile = 64;
+  const std::vector<PixelRect> tiles = make_tiles(film.crop(), kTile);
+  std::vector<double> sums(tiles.size());
+  parallel_for(tiles.size(), threads, [&](std::size_t i, int) {
+    const PixelRect& tile = tiles[i];
+    const ErrorShares shares(film, tile);
+    for (int y = tile.y; y < tile.y + tile.height; ++y) {
+      for (int x = tile.x; x < tile.x + tile.width; ++x) sums[i] += shares.at(x, y);
+    }
+  });
+  return std::accumulate(sums.begin(), sums.end(), 0.0);
 }
 
 struct PixelMean {
@@ -143,12 +162,12 @@ void Film::merge(const TileSums& tile) {
   std::atomic_ref(non_finite_samples_) += tile.non_finite_samples;
 }
 
-FilmSummary Film::summary() const {
+FilmSummary Film::summary(int threads) const {
   FilmSummary result;
   result.non_finite_samples = non_finite_samples_;
   if (pixels_.empty()) return result;
   result.min_samples = std::numeric_limits<std::uint32_t>::max();
-  double squares = 0, bias = 0;
+  double bias = 0;
   bool has_variance = true;
   for (const Pixel& p : pixels_) {
     const PixelMean m = pixel_mean(p.radiance, p.samples);
@@ -156,15 +175,12 @@ FilmSummary Film::summary() const {
     result.max_samples = std::max(result.max_samples, p.samples);
     result.mean_samples += p.samples;
     has_variance = has_variance && m.has_variance;
-    for (int c = 0; c < 3; ++c) {
-      result.mean[c] += m.mean[c];
-      squares += m.variance[c] / (m.mean[c] * m.mean[c] + 1e-2);
-    }
+    for (int c = 0; c < 3; ++c) result.mean[c] += m.mean[c];
   }
   const double count = static_cast<double>(pixels_.size());
   for (double& mean : result.mean) mean /= count;
   result.mean_samples /= count;
-  if (has_variance) result.error_noise = std::sqrt(squares / (3 * count));
+  if (has_variance) result.error_noise = std::sqrt(noise_share(*this, threads) / count);
   if (!biased_) {
     result.error_bias = 0;
   } else if (result.min_samples >= kBiasHalves) {

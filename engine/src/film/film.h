@@ -29,7 +29,7 @@ inline constexpr float kNoiseInterval95 = 2.364624f;
 struct FilmSummary {
   std::uint32_t min_samples = 0, max_samples = 0;
   double mean_samples = 0;  // per pixel
-  // sqrt of the estimated relMSE, mean over pixels and channels of Var(I) / (I^2 + 1e-2); absent below two replicates.
+  // sqrt of the estimated relMSE, as the decisions of error goals have it (film/error_shares.h); absent below two replicates.
   std::optional<double> error_noise;
   // The same of the method's bias; 0 for a method without one, absent below two samples of one that has.
   std::optional<double> error_bias;
@@ -64,7 +64,7 @@ class Film {
   // end: Error otherwise. Threads may merge disjoint tiles at the same time.
   void merge(const TileSums& tile);
 
-  FilmSummary summary() const;
+  FilmSummary summary(int threads = 1) const;
   // The pixel at (x, y) of the frame, R G B. No standard error below two replicates.
   PixelEstimate estimate(int x, int y) const;
   std::uint32_t samples(int x, int y) const { return pixel(x, y).samples; }

@@ -72,7 +72,7 @@ FrameResult render_frame(const Scene& scene, const Integrator& integrator, const
         result.film.merge(render_tile(scene, integrator, task, queries[static_cast<std::size_t>(thread)], cancelled));
       });
       done = pass.end;
-      result.summary = result.film.summary();
+      result.summary = result.film.summary(settings.threads);
       TimelinePoint point{seconds_since(start), result.summary.mean_samples, result.summary.error_noise, {}, {}};
       if (goal.rel_error && done == round->samples.end) {
         look = look_at(result.film, {*goal.rel_error, kUnbounded}, number, audit ? &*audit : nullptr,

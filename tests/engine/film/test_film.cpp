@@ -138,6 +138,34 @@ TEST(Film, NoiseIsTheStandardErrorOfTheMean) {
   EXPECT_GT(std::abs(mean_square - 8 * expected), 0.02 * expected);
 }
 
+// One sample in a thousand is 300, all others 0.1.
+float rare(int x, int y, std::uint32_t i) { return hash_words(static_cast<std::uint64_t>(x), y, i) % 1000 == 0 ? 300.0f : 0.1f; }
+
+// A bright sample raises the pixel that it strikes, and must not hide its error behind that.
+TEST(Film, ReportsTheErrorOfRareEvents) {
+  constexpr std::uint32_t kSamples = 64;
+  const PixelRect frame{0, 0, 200, 100};
+  Film film(200, 100, frame, kLayers);
+  for (const SampleRange pass : passes(kSamples)) film.merge(tile_of(frame, pass, rare));
+  double squares = 0, by_own_mean = 0;
+  for (int y = 0; y < 100; ++y) {
+    for (int x = 0; x < 200; ++x) {
+      const PixelEstimate pixel = film.estimate(x, y);
+      for (std::size_t c = 0; c < 3; ++c) {
+        const auto mean = static_cast<double>(pixel.mean[c]), noise = static_cast<double>(pixel.standard_error[c]);
+        // What pixels show that are not struck, which are nearly all.
+        const double likely = 0.1 * static_cast<double>(c + 1);
+        squares += (mean - likely) * (mean - likely) / (likely * likely + 1e-2) / (3 * 20000);
+        by_own_mean += noise * noise / (mean * mean + 1e-2) / (3 * 20000);
+      }
+    }
+  }
+  const double claimed = *film.summary(2).error_noise;
+  EXPECT_NEAR(claimed, std::sqrt(squares), 0.05 * std::sqrt(squares));
+  EXPECT_LT(std::sqrt(by_own_mean), 0.5 * std::sqrt(squares));  // twin
+  EXPECT_EQ(claimed, *film.summary(1).error_noise);
+}
+
 TEST(Film, ClaimsNoErrorFromOneReplicate) {
   Film film(40, 30, kCrop, kLayers);
   film.merge(tile_of(kCrop, {0, 1}, noise));
