@@ -4,6 +4,7 @@
 #include <numeric>
 
 namespace fluxfarm {
+
 BoundsTree::BoundsTree(std::span<const Bounds> bounds) : order_(bounds.size()) {
   std::iota(order_.begin(), order_.end(), 0u);
   if (bounds.empty()) return;
@@ -14,8 +15,9 @@ BoundsTree::BoundsTree(std::span<const Bounds> bounds) : order_(bounds.size()) {
   }
   const Vec3f size = all.upper - all.lower;
   origin_ = all.lower;
-  // What has no size is all on the first step.
-  const auto per_metre = [](float extent) { return extent > 0 ? kLastStep / extent : 0.0f; };
+  // What has hardly any size is all on the first step.
+  constexpr float kLeastExtent = 1e-30f;  // m: steps per metre are a float32
+  const auto per_metre = [](float extent) { return extent > kLeastExtent ? kLastStep / extent : 0.0f; };
   steps_per_metre_ = {per_metre(size.x), per_metre(size.y), per_metre(size.z)};
   build(0, order_.size(), bounds);
 }

@@ -4,7 +4,6 @@
 // to a bright room around the corner - the records nearby have seen.
 #pragma once
 
-#include <algorithm>
 #include <cmath>
 
 #include "integrators/irradiance/hemisphere_sampler.h"
