@@ -27,7 +27,8 @@ Camera::Camera(const CameraDescription& description, int width, int height)
     : near_clip_(description.near_clip),
       far_clip_(description.far_clip),
       aperture_radius_(description.aperture_radius),
-      focus_distance_(description.focus_distance) {
+      focus_distance_(description.focus_distance),
+      unit_(description.unit) {
   const Transform& to_world = description.to_world;
   origin_ = to_world.point({});
   axis_ = normalize(to_world.vector({0, 0, 1}));
@@ -61,7 +62,7 @@ Ray Camera::ray(float x, float y, Vec2f u) const {
 }
 
 std::optional<Camera::Projection> Camera::project(Vec3f point, Vec2f u) const {
-  const float z = depth(point);
+  const float z = along_axis(point);
   if (!(z > near_clip_ && z < far_clip_)) return std::nullopt;
   const Vec3f lens = has_lens() ? lens_point(u) : Vec3f{};
   const Vec3f d = point - (origin_ + lens);

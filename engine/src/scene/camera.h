@@ -39,10 +39,11 @@ class Camera {
   Vec3f position() const { return origin_; }
   // What a pixel in the middle of the film sees, side in rad.
   float pixel_angle() const { return std::sqrt(length(cross(step_x_, step_y_))); }
-  // Distance of a point from the camera along the view axis, m.
-  float depth(Vec3f point) const { return dot(point - origin_, axis_); }
+  // Distance of a point from the camera along the view axis, m of the scene file.
+  float depth(Vec3f point) const { return unit_ * along_axis(point); }
 
  private:
+  float along_axis(Vec3f point) const { return dot(point - origin_, axis_); }
   Vec3f lens_point(Vec2f u) const;  // from the origin
 
   Vec3f origin_;
@@ -52,6 +53,7 @@ class Camera {
   Vec3f right_, down_;     // unit
   float near_clip_, far_clip_;
   float aperture_radius_, focus_distance_;
+  float unit_;
 };
 
 }  // namespace fluxfarm

@@ -129,6 +129,7 @@ struct CameraDescription {
   float aperture_radius = 0;  // m; 0 is a pinhole
   float focus_distance = 1;   // m along the view axis, to the plane that a lens shows sharply
   int medium = kNoMedium;     // in which the camera stands: index into SceneDescription::media
+  float unit = 1;             // m, of the lengths above and of all places: 1 but in a working frame (scene/working_frame.h)
 };
 
 struct MethodDescription {

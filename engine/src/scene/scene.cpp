@@ -9,6 +9,7 @@
 #include "scene/make_emitter.h"
 #include "scene/make_shape.h"
 #include "scene/material_needs.h"
+#include "scene/working_frame.h"
 #include "support/error.h"
 
 namespace fluxfarm {
@@ -61,18 +62,22 @@ void check_reach(const EmitterDescription& emitter) {
 
 }  // namespace
 
-Scene::Scene(const SceneDescription& description, int threads)
-    : film_(description.film),
-      method_(description.method),
-      pixel_filter_(description.film.filter),
-      camera_(description.camera, description.film.width, description.film.height),
-      bsdfs_(make_bsdfs(description.materials)),
-      textures_(make_textures(description.textures)),
-      textured_materials_(make_textured_materials(description.materials, bsdfs_, textures_)),
-      media_(description.media.begin(), description.media.end()),
-      camera_medium_(medium(description.camera.medium)),
+Scene::Scene(const SceneDescription& description, int threads) : Scene(WorkingDescription(description), threads) {}
+
+Scene::Scene(const WorkingDescription& working, int threads)
+    : film_(working.get().film),
+      method_(working.get().method),
+      pixel_filter_(working.get().film.filter),
+      camera_(working.get().camera, working.get().film.width, working.get().film.height),
+      bsdfs_(make_bsdfs(working.get().materials)),
+      textures_(make_textures(working.get().textures)),
+      textured_materials_(make_textured_materials(working.get().materials, bsdfs_, textures_)),
+      media_(working.get().media.begin(), working.get().media.end()),
+      camera_medium_(medium(working.get().camera.medium)),
       accelerator_(std::make_unique<RayAccelerator>(threads)),
-      warnings_(description.warnings) {
+      warnings_(working.get().warnings) {
+  const SceneDescription& description = working.get();
+  warnings_.insert(warnings_.end(), working.warnings().begin(), working.warnings().end());
   census_.materials = bsdfs_.size();
   census_.textures = textures_.size();
   census_.media = media_.size();

@@ -41,6 +41,8 @@ struct Census {
   bool null_boundaries = false;  // light passes some surface as if it was not there
 };
 
+class WorkingDescription;
+
 class Scene {
  public:
   // One surface of the scene with all that belongs to it.
@@ -111,6 +113,8 @@ class Scene {
   const std::vector<std::string>& warnings() const { return warnings_; }
 
  private:
+  Scene(const WorkingDescription& working, int threads);
+
   struct TexturedSides {
     const TexturedMaterial* front = nullptr;
     const TexturedMaterial* back = nullptr;
