@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "io/emission_limits.h"
 #include "support/error.h"
 
 namespace fluxfarm {
@@ -23,7 +24,7 @@ EmitterDescription read_gltf_light(const GltfFile& file, const GltfPlaced& place
   const double intensity = light.number("intensity", 1, kNotNegative);
   const Rgb radiometric{static_cast<float>(color[0] * intensity), static_cast<float>(color[1] * intensity),
                         static_cast<float>(color[2] * intensity)};
-  if (!is_finite(radiometric)) light.fail("intensity", "expected a smaller number");
+  if (!is_within_emission_limits(radiometric)) light.fail("intensity", std::string(kEmissionExpected) + ", with color");
   const std::string type = light.text("type", "");
   if (type == "directional") return DirectionalEmitterDescription{direction(placed), radiometric};
   const Vec3f position = placed.to_world.point({0, 0, 0});

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "io/emission_limits.h"
 #include "support/error.h"
 
 namespace fluxfarm {
@@ -154,7 +155,9 @@ class GltfMaterials::Reader {
       emitted *= textures_.mean(use->texture);
       warn("emissiveTexture: the light has the mean colour of the texture all over");
     }
-    if (!is_finite(emitted)) material_.fail("emissiveFactor", "with emissiveStrength it is infinite, expected a smaller number");
+    if (!is_within_emission_limits(emitted)) {
+      material_.fail("emissiveFactor", std::string(kEmissionExpected) + ", with emissiveStrength and emissiveTexture");
+    }
     if (emitted.is_black()) return;
     result_.material.emitted_radiance = emitted;
     if (result_.mask) warn("alphaMode: the light shines in full where the surface is transparent, too");

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "io/emission_limits.h"
 #include "io/text.h"
 #include "support/error.h"
 
@@ -137,7 +138,10 @@ Rgb Properties::rgb(const std::string& name, Rgb otherwise, NumberRange range) {
 Rgb Properties::emission(const std::string& name, Rgb otherwise) {
   const Property* property = find(name);
   const Rgb value = rgb(name, otherwise, kNotNegative);
-  return property && std::holds_alternative<UniformSpectrum>(property->value) ? value * kEqualEnergyWhite : value;
+  const bool is_spectrum = property && std::holds_alternative<UniformSpectrum>(property->value);
+  const Rgb emitted = is_spectrum ? value * kEqualEnergyWhite : value;
+  if (!is_within_emission_limits(emitted)) fail(name, kEmissionExpected);
+  return emitted;
 }
 
 const PropertyValue* Properties::raw(const std::string& name) {

@@ -1,9 +1,12 @@
 #include "io/read_emitter.h"
 
+#include <algorithm>
 #include <cmath>
 
+#include "io/emission_limits.h"
 #include "io/envmap_image.h"
 #include "io/properties.h"
+#include "io/text.h"
 #include "io/transform_checks.h"
 #include "support/error.h"
 
@@ -78,9 +81,14 @@ EnvmapEmitterDescription read_envmap_emitter(const PluginNode& emitter, Properti
   const std::filesystem::path file = bundle.find(properties.text("filename", ""), emitter.place);
   properties.finish();  // before the image, which may be large
   result.image = read_envmap_image(file, bundle.name(file));
+  float brightest = 0;
   for (Rgb& pixel : result.image.pixels) {
     pixel *= scale;
     if (!is_finite(pixel)) properties.fail("scale", "makes the image's radiance infinite, expected a smaller number");
+    brightest = std::max(brightest, max_component(pixel));
+  }
+  if (!is_within_emission_limits(Rgb{brightest})) {
+    properties.fail("scale", "makes the brightest pixel " + number_text(static_cast<double>(brightest)) + ", " + kEmissionExpected);
   }
   return result;
 }

@@ -207,6 +207,19 @@ TEST(Emitters, DirectionalLightNeedsOneDirection) {
   EXPECT_EQ(error(up + frame), "scene.xml:2: emitter \"directional\": direction = 0, 1, 0, but to_world is given, too");
 }
 
+// Beyond these, radiance becomes infinite or photons are lost.
+TEST(Emitters, AreNeitherTooBrightNorTooDim) {
+  const SceneFolder folder;
+  const auto read = [&](const std::string& value) {
+    emitter<PointEmitterDescription>(folder, "point", "<rgb name=\"intensity\" value=\"" + value + "\"/>");
+  };
+  for (const char* value : {"0", "1e-20", "1e30", "0 1e-40 1"}) EXPECT_NO_THROW(read(value)) << value;
+  const auto error = [&](const std::string& value) { return error_of([&] { read(value); }); };
+  const std::string expected = ", expected 0 or from 1e-20 to 1e30 in the largest channel";
+  EXPECT_EQ(error("0 1e-21 0"), "scene.xml:2: emitter \"point\": intensity = 0, 1e-21, 0" + expected);
+  EXPECT_EQ(error("1 1e31 1"), "scene.xml:2: emitter \"point\": intensity = 1, 1e+31, 1" + expected);
+}
+
 TEST(Emitters, StandWhereTheyBelong) {
   const SceneFolder folder;
   EXPECT_EQ(error_of([&] { folder.read_xml("<emitter type=\"area\"/>"); }),
