@@ -35,7 +35,8 @@ inline CacheQuality quality_of(SampleRange level) {
   const float growth = static_cast<float>(level.end) / static_cast<float>(kFirstCacheLevel);
   // Twice the paths for eight times the samples, in strata of which each replicate has as many.
   const auto replicates = static_cast<float>(kReplicates);
-  const int side = static_cast<int>(kReplicates) * static_cast<int>(std::lround(kFirstSide * std::pow(growth, 1.0f / 6) / replicates));
+  const int side =
+      static_cast<int>(kReplicates) * static_cast<int>(std::lround(kFirstSide * std::pow(growth, 1.0f / 6) / replicates));
   const float tolerance = kFirstTolerance / std::cbrt(growth);
   // A turn by t brings light of the horizon in and out: t^2 / 4 of all, if it is even.
   return {.strata = side, .tolerance = tolerance, .max_angle = 2 * std::sqrt(tolerance)};
