@@ -3,14 +3,15 @@ one with a glass egg and metal shades.
 
     irradiance.py [--seeds 3] [--goals 0.05 0.02 0.01] [--reference-spp 2048] [--out out] [SCENE ...]
 
-The reference is a long path-traced run in two halves, kept in the --out folder (delete them when a scene changes). True
+The reference is a long path-traced run in two halves, kept in the --out folder (delete them when a scene changes). For
+the room with the glass egg paths would need days: its halves are by progressive photons, --egg-spp samples each. True
 relMSE is the mean of (I - A) (I - B) / (R^2 + 0.01) over both halves A and B and their mean R: their noise is
 independent, so that it drops out. Two threads; seconds are those of rendering, with all records. Processor seconds,
 over the threads, stand beside them: those hardly change when the machine has other work.
 
-Path tracing meets the first goal alone; the other end of its line is a half of the reference, at the same seconds a
-sample: to the smaller goals it may take hours. Seconds to a true error lie between such points on a line of logarithms,
-and beyond them go on as noise does, with the square of the error; the latter are marked with ~.
+Path tracing meets the first goal alone; the other end of its line is a half of a path-traced reference, at the same
+seconds a sample: to the smaller goals it may take hours. Seconds to a true error lie between such points on a line of
+logarithms, and beyond them go on as noise does, with the square of the error; the latter are marked with ~.
 """
 
 import argparse
@@ -29,12 +30,21 @@ import OpenEXR
 ROOT = Path(__file__).parents[2]
 ENGINE = Path(sys.executable).with_name("fluxfarm-engine")
 SCENES_DATA = Path(os.environ.get("FLUXFARM_SCENES_DATA", ROOT.parent / "shared" / "scenes-data"))
-SCENES = {
-    "interior": (ROOT / "scenes" / "interior" / "scene.xml", "320x180"),
-    "cornell-box": (SCENES_DATA / "cornell-box" / "scene.xml", "256x256"),
-    "veach-bidir": (SCENES_DATA / "veach-bidir" / "scene.xml", "320x180"),
-}
 THREADS = 2
+
+
+@dataclass(frozen=True)
+class Room:
+    scene: Path
+    size: str
+    reference: str = "path"  # its method
+
+
+ROOMS = {
+    "interior": Room(ROOT / "scenes" / "interior" / "scene.xml", "160x90"),
+    "cornell-box": Room(SCENES_DATA / "cornell-box" / "scene.xml", "256x256"),
+    "veach-bidir": Room(SCENES_DATA / "veach-bidir" / "scene.xml", "64x36", "photon-progressive"),
+}
 
 
 @dataclass(frozen=True)
@@ -62,11 +72,14 @@ def read(image: Path) -> np.ndarray:
 
 
 def render(name: str, image: Path, method: str, seed: int, *goal: object) -> Run:
-    scene, size = SCENES[name]
+    room = ROOMS[name]
     report = image.with_suffix(".json")
-    options = ("--size", size, "--threads", THREADS, "--seed", seed, "--integrator", method, "--report", report, *goal)
+    options = ("--size", room.size, "--threads", THREADS, "--seed", seed, "--report", report, *goal)
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
-    subprocess.run([str(part) for part in (ENGINE, "render", scene, "-o", image, *options)], check=True)
+    subprocess.run(
+        [str(part) for part in (ENGINE, "render", room.scene, "-o", image, "--integrator", method, *options)],
+        check=True,
+    )
     after = resource.getrusage(resource.RUSAGE_CHILDREN)
     return Run(read(image), json.loads(report.read_text()), (after.ru_utime - before.ru_utime) / THREADS)
 
@@ -74,10 +87,10 @@ def render(name: str, image: Path, method: str, seed: int, *goal: object) -> Run
 def reference_halves(name: str, out: Path, spp: int) -> tuple[np.ndarray, np.ndarray]:
     halves = []
     for seed in (900, 901):
-        image = out / f"reference-{name}-{SCENES[name][1]}-{spp}-{seed}.exr"
+        image = out / f"reference-{name}-{ROOMS[name].size}-{spp}-{seed}.exr"
         if not image.exists():
             unfinished = image.with_stem("unfinished")
-            render(name, unfinished, "path", seed, "--spp", spp)
+            render(name, unfinished, ROOMS[name].reference, seed, "--spp", spp)
             unfinished.rename(image)
         halves.append(read(image))
     return halves[0], halves[1]
@@ -131,7 +144,10 @@ def compare(name: str, goals: list[float], seeds: int, spp: int, out: Path) -> N
         cells, ratios = [], []
         for kind in ("seconds", "processor_seconds"):
             start = getattr(path, kind)
-            of_path, path_beyond = seconds_to(goal, [(path.error, start), (half, start * spp / path.samples)])
+            runs = [(path.error, start)]
+            if ROOMS[name].reference == "path":
+                runs.append((half, start * spp / path.samples))
+            of_path, path_beyond = seconds_to(goal, runs)
             of_cache, cache_beyond = seconds_to(goal, [(point.error, getattr(point, kind)) for point in cache])
             cells += [f"{path_beyond}{of_path:.1f}", f"{cache_beyond}{of_cache:.1f}"]
             ratios.append(f"{of_path / of_cache:.1f}")
@@ -140,19 +156,22 @@ def compare(name: str, goals: list[float], seeds: int, spp: int, out: Path) -> N
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("scenes", nargs="*", metavar="SCENE", default=list(SCENES), help=", ".join(SCENES))
+    parser.add_argument("scenes", nargs="*", metavar="SCENE", default=list(ROOMS), help=", ".join(ROOMS))
     parser.add_argument("--seeds", type=int, default=3)
     parser.add_argument("--goals", type=float, nargs="+", default=[0.05, 0.02, 0.01])
     parser.add_argument("--reference-spp", type=int, default=2048, help="samples a pixel in each half")
+    parser.add_argument("--egg-spp", type=int, default=65536, help="the same for veach-bidir")
     parser.add_argument("--out", type=Path, default=ROOT / "out")
     options = parser.parse_args()
     folder = options.out / "irradiance"
     folder.mkdir(parents=True, exist_ok=True)
     for name in options.scenes:
-        if SCENES[name][0].exists():
-            compare(name, options.goals, options.seeds, options.reference_spp, folder)
+        room = ROOMS[name]
+        if room.scene.exists():
+            spp = options.reference_spp if room.reference == "path" else options.egg_spp
+            compare(name, options.goals, options.seeds, spp, folder)
         else:
-            print(f"left out: {SCENES[name][0]} does not exist (set FLUXFARM_SCENES_DATA)")
+            print(f"left out: {room.scene} does not exist (set FLUXFARM_SCENES_DATA)")
 
 
 if __name__ == "__main__":
