@@ -1,4 +1,5 @@
 // fluxfarm-engine plan, info, worker: the short commands.
+#include <atomic>
 #include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -6,10 +7,12 @@
 #include "accel/ray_accelerator.h"
 #include "commands.h"
 #include "film/pass_schedule.h"
+#include "method_options.h"
 #include "scene_options.h"
 #include "support/build_info.h"
 #include "worker/build_id.h"
 #include "worker/messages.h"
+#include "worker/pilot.h"
 #include "worker/plan.h"
 #include "worker/worker_process.h"
 
@@ -36,14 +39,46 @@ void print_info(bool json) {
   }
 }
 
-void print_plan(const SceneOptions& options, const std::string& integrator, bool json) {
-  const Scene scene(options.read(), 0);
-  const nlohmann::json plan = nlohmann::json::parse(plan_json(scene, *make_integrator(integrator, scene)));
+struct PlanOptions {
+  SceneOptions scene;
+  std::string integrator;  // "": as the scene says
+  Goal goal;
+  std::uint64_t seed = 0;
+  int threads = 0;
+  bool json = false;
+};
+
+void print_choice(const nlohmann::json& choice) {
+  std::printf("chosen for: %s\n", choice["reason"].get<std::string>().c_str());
+  for (const auto& method : choice["methods"]) {
+    std::printf("%-22s ", method["method"].get<std::string>().c_str());
+    if (method["tried"].get<bool>()) {
+      std::printf("error %.2g with %.0f samples a pixel in about %.2g s\n", method["error"].get<double>(),
+                  method["samples"].get<double>(), method["seconds"].get<double>());
+    } else {
+      std::printf("left out: %s\n", method["reason"].get<std::string>().c_str());
+    }
+  }
+}
+
+void print_plan(const PlanOptions& options) {
+  const SceneDescription description = options.scene.read();
+  const Scene scene(description, 0);
+  const FilmDescription& film = scene.film();
+  const Picture picture{{film.crop_x, film.crop_y, film.crop_width, film.crop_height},
+                        options.seed,
+                        settled(options.goal, description.samples_per_pixel)};
+  const std::atomic<bool> never{false};
+  const Method method = make_method(options.integrator, scene, picture, resolve_threads(options.threads), never);
+  const nlohmann::json plan =
+      nlohmann::json::parse(plan_json(scene, *method.integrator, method.choice ? &*method.choice : nullptr));
+  const bool json = options.json;
   if (json) {
     std::printf("%s\n", plan.dump(2).c_str());
     return;
   }
   std::printf("integrator: %s\n", plan["integrator"].get<std::string>().c_str());
+  if (plan.contains("choice")) print_choice(plan["choice"]);
   for (const auto& part : plan["parts"]) {
     std::printf("%-22s %-3s  %s\n", part["part"].get<std::string>().c_str(), part["on"].get<bool>() ? "on" : "off",
                 part["reason"].get<std::string>().c_str());
@@ -61,14 +96,14 @@ void add_info_command(CLI::App& app) {
 
 void add_plan_command(CLI::App& app) {
   CLI::App* command = app.add_subcommand("plan", "What a scene contains and which parts of the engine it needs");
-  const auto options = std::make_shared<SceneOptions>();
-  const auto json = std::make_shared<bool>(false);
-  options->add_to(*command, false);
-  command->add_flag("--json", *json, "As JSON");
-  const auto integrator = std::make_shared<std::string>();
-  command->add_option("--integrator", *integrator,
-                      "Method: auto, path, photon, photon-progressive or irradiance-cache; default: as the scene says");
-  command->callback([options, integrator, json] { print_plan(*options, *integrator, *json); });
+  const auto options = std::make_shared<PlanOptions>();
+  options->scene.add_to(*command, true);
+  command->add_flag("--json", options->json, "As JSON");
+  add_method_option(*command, options->integrator);
+  add_goal_options(*command, options->goal);
+  command->add_option("--threads", options->threads, "Render threads of a pilot; default: all cores")->check(CLI::Range(1, 1024));
+  command->add_option("--seed", options->seed, "Seed of the random numbers")->capture_default_str();
+  command->callback([options] { print_plan(*options); });
 }
 
 void add_worker_command(CLI::App& app) {

@@ -13,11 +13,13 @@
 #include "commands.h"
 #include "io/exr.h"
 #include "io/png.h"
+#include "method_options.h"
 #include "output_file.h"
 #include "scene_options.h"
 #include "support/error.h"
 #include "worker/build_id.h"
 #include "worker/frame_renderer.h"
+#include "worker/pilot.h"
 #include "worker/plan.h"
 
 namespace fluxfarm {
@@ -31,8 +33,6 @@ struct RenderOptions {
   int threads = 0, tile = 64;
   std::uint64_t seed = 0;
 };
-
-constexpr std::uint32_t kDefaultSpp = 64;
 
 std::atomic<bool> interrupted{false};
 static_assert(std::atomic<bool>::is_always_lock_free, "set from a signal handler");
@@ -79,22 +79,21 @@ void render(const RenderOptions& options) {
   const int threads = resolve_threads(options.threads);
   const Scene scene(description, threads);
   const double build = watch.lap();
-  const std::unique_ptr<Integrator> integrator = make_integrator(options.integrator, scene);
-  const double prepare = watch.lap();
   for (const std::string& warning : scene.warnings()) std::fprintf(stderr, "warning: %s\n", warning.c_str());
 
   const FilmDescription& film = scene.film();
   FrameSettings settings{
       {film.crop_x, film.crop_y, film.crop_width, film.crop_height}, options.tile, threads, options.seed, options.goal};
-  if (!settings.goal.spp && !settings.goal.seconds && !settings.goal.rel_error) {
-    const int asked = description.samples_per_pixel;
-    settings.goal.spp = asked > 0 ? static_cast<std::uint32_t>(asked) : kDefaultSpp;
-  }
-  const FrameResult result = render_frame(scene, *integrator, settings, interrupted, say_progress);
+  settings.goal = settled(settings.goal, description.samples_per_pixel);
+  const Method method = make_method(options.integrator, scene, {settings.crop, settings.seed, settings.goal}, threads, interrupted);
+  const double prepare = watch.lap();
+  if (method.choice) std::fprintf(stderr, "integrator: %s (%s)\n", method.choice->method.c_str(), method.choice->reason.c_str());
+  const Integrator& integrator = *method.integrator;
+  const FrameResult result = render_frame(scene, integrator, settings, interrupted, say_progress, method.known);
   if (isatty(STDERR_FILENO) != 0) std::fprintf(stderr, "\n");
   watch.lap();
 
-  const Image image = result.film.image(settings.crop, {"", "", integrator->name(), engine_build_id(), options.seed});
+  const Image image = result.film.image(settings.crop, {"", "", integrator.name(), engine_build_id(), options.seed});
   exr.commit([&](const std::filesystem::path& path) { write_exr(path, image); });
   if (png) png->commit([&](const std::filesystem::path& path) { write_png(path, image); });
   const double write = watch.lap();
@@ -118,7 +117,7 @@ void render(const RenderOptions& options) {
   }
   const nlohmann::json figures = {
       {"engine", engine_build_id()},
-      {"integrator", integrator->name()},
+      {"integrator", integrator.name()},
       {"size", {film.width, film.height}},
       {"threads", threads},
       {"seed", options.seed},
@@ -134,7 +133,7 @@ void render(const RenderOptions& options) {
         {"bias", or_null(result.summary.error_bias)},
         {"unseen", or_null(result.error_unseen)}}},
       {"timeline", timeline},
-      {"plan", nlohmann::json::parse(plan_json(scene, *integrator))},
+      {"plan", nlohmann::json::parse(plan_json(scene, integrator, method.choice ? &*method.choice : nullptr))},
       {"warnings", warnings}};
   report->commit([&](const std::filesystem::path& path) { write_report(path, figures); });
 }
@@ -148,14 +147,8 @@ void add_render_command(CLI::App& app) {
   command->add_option("-o,--output", options->exr, "EXR file to write")->required();
   command->add_option("--png", options->png, "Also write a tone-mapped PNG");
   command->add_option("--report", options->report, "Write figures of the run as JSON");
-  command->add_option("--integrator", options->integrator,
-                      "Method: auto, path, photon, photon-progressive or irradiance-cache; default: as the scene says");
-  auto* spp = command->add_option("--spp", options->goal.spp, "Samples per pixel")->check(CLI::Range(1u, 1u << 24));
-  auto* seconds = command->add_option("--seconds", options->goal.seconds, "Time budget in seconds")->check(CLI::PositiveNumber);
-  auto* error = command->add_option("--rel-error", options->goal.rel_error, "Stop at this estimated relative error, sqrt(relMSE)")
-                    ->check(CLI::PositiveNumber);
-  spp->excludes(seconds)->excludes(error);
-  seconds->excludes(error);
+  add_method_option(*command, options->integrator);
+  add_goal_options(*command, options->goal);
   command->add_option("--threads", options->threads, "Render threads; default: all cores")->check(CLI::Range(1, 1024));
   command->add_option("--tile", options->tile, "Tile side in pixels; does not change the result")
       ->check(CLI::Range(1, 4096))

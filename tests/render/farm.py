@@ -30,7 +30,7 @@ class Farm:
         assert self.service.client is not None
         return self.service.client
 
-    def submit(self, scene: Path = SCENE, goal: dict[str, float] | None = None, integrator: str = "auto") -> str:
+    def submit(self, scene: Path = SCENE, goal: dict[str, float] | None = None, integrator: str | None = None) -> str:
         size = {"width": SIDE, "height": SIDE}
         wanted = {"size": size, "goal": goal or {"spp": SPP}, "seed": SEED, "integrator": integrator}
         return self.client.submit(scene.read_text(), **wanted)

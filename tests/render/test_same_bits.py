@@ -11,6 +11,12 @@ import pytest
 from conftest import ENGINE, ROOT, Layers, read_exr, render_alone, same_bits
 from farm import SCENE, SEED, SIDE, SPP, Farm
 
+# What "auto" is to choose: scene, goal, method.
+AUTO = [
+    ("cornell", {"rel_error": 0.06}, "irradiance-cache"),
+    ("cornell-glass", {"spp": 40}, "photon-progressive"),
+]
+
 
 @pytest.fixture(scope="module")
 def alone(tmp_path_factory: pytest.TempPathFactory) -> Layers:
@@ -88,6 +94,29 @@ def test_prepared_passes_give_the_same_bits_whoever_makes_them(farms: list[Farm]
     report = farm.client.http.get(f"/v1/jobs/{job_id}/report").json()
     assert report["integrator"] == method
     assert 0 < report["error"]["bias"] < 0.2
+
+
+@pytest.mark.parametrize(("scene", "goal", "method"), AUTO)
+def test_chosen_method_is_the_same_whoever_chooses_it(
+    farms: list[Farm], tmp_path: Path, scene: str, goal: dict[str, float], method: str
+) -> None:
+    """The second worker renders by the method that the first one's pilot chose, and so does a service started anew."""
+    path = ROOT / "scenes" / scene / "scene.xml"
+    (option,) = (("--" + name.replace("_", "-"), value) for name, value in goal.items())
+    options = ("--size", f"{SIDE}x{SIDE}", *option, "--seed", SEED, "--integrator", "auto", "--tile", 16)
+    alone = render_alone(path, tmp_path / "alone.exr", *options)
+    farms.append(farm := Farm(tmp_path, workers=2))
+    job_id = farm.submit(path, goal, integrator="auto")
+    farm.wait_for_tiles(job_id, 12)
+    farm.service.end(signal.SIGKILL)
+    farm.start()
+    assert same_bits(alone, farm.layers(job_id))
+    plan = farm.client.http.get(f"/v1/jobs/{job_id}/plan").json()
+    assert (plan["integrator"], farm.client.job(job_id)["integrator"]) == (method, method)
+    assert plan["choice"]["goal"] == goal
+    assert "times as much" in plan["choice"]["reason"]
+    tried = [known["method"] for known in plan["choice"]["methods"] if known["tried"]]
+    assert {"path", method} <= set(tried)
 
 
 @pytest.mark.parametrize(("tile_size", "workers"), [(16, 4), (64, 1)])

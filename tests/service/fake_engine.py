@@ -31,7 +31,7 @@ from pathlib import Path
 
 from fluxfarm.adapters.protocol import engine_pb2 as pb
 
-PROTOCOL_VERSION = 4
+PROTOCOL_VERSION = 5
 EXR_MAGIC = b"\x76\x2f\x31\x01"
 PNG_MAGIC = b"\x89PNG\r\n\x1a\n"
 

@@ -262,6 +262,15 @@ Image Film::image(PixelRect rect, const ImageInfo& info) const {
   return image;
 }
 
+Rgb Film::layer_mean(int x, int y, LightLayer layer) const {
+  const std::vector<LightLayer> layers = layers_.list();
+  const auto place = static_cast<std::size_t>(std::ranges::find(layers, layer) - layers.begin());
+  const std::uint32_t count = samples(x, y);
+  if (place == layers.size() || count == 0) return {};
+  const double* sum = layer_sums_.data() + (index(x, y) * layers.size() + place) * 3;
+  return {static_cast<float>(sum[0] / count), static_cast<float>(sum[1] / count), static_cast<float>(sum[2] / count)};
+}
+
 Rgb Film::replicate_mean(int x, int y, std::uint32_t replicate) const {
   const Pixel& p = pixel(x, y);
   const double count = replicate_samples(p.samples, replicate);

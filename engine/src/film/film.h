@@ -82,6 +82,8 @@ class Film {
   PixelRect crop() const { return crop_; }
   LightLayers layers() const { return layers_; }
   bool biased() const { return biased_; }
+  // Mean of one layer in the pixel at (x, y) of the frame; black if the film does not have it.
+  Rgb layer_mean(int x, int y, LightLayer layer) const;
   // Sum of one replicate of the pixel at (x, y) of the frame; for tests and tools.
   Rgb replicate_mean(int x, int y, std::uint32_t replicate) const;
 

@@ -84,7 +84,7 @@ class Integrator {
                         std::span<SampleResult> results, RayQueries& queries) const = 0;
 };
 
-// Those that make_integrator() knows, besides "auto".
+// Those that make_integrator() knows. "auto" is none of them: a pilot chooses among these (worker/pilot.h).
 const std::vector<std::string>& integrator_names();
 
 // The method of that name, or SettingError that names those there are. "" takes the scene's own.

@@ -13,7 +13,7 @@ std::unique_ptr<Integrator> unprepared(const std::string& name, const Census& ce
   if (name == "irradiance-cache") return std::make_unique<IrradianceCacheIntegrator>();
   if (name == "photon") return std::make_unique<PhotonIntegrator>();
   if (name == "photon-progressive") return std::make_unique<PhotonProgressiveIntegrator>();
-  if (name != "path" && name != "auto") {
+  if (name != "path") {
     throw SettingError("integrator = \"" + name + "\", expected auto, path, photon, photon-progressive or irradiance-cache");
   }
   if (census.media > 0 || census.null_boundaries) return std::make_unique<VolumePathIntegrator>();

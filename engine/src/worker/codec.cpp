@@ -33,8 +33,17 @@ std::vector<std::filesystem::path> decode_paths(const Files& files) {
   return paths;
 }
 
+LoadSceneRequest::Picture decode(const v1::Picture& m) {
+  Goal goal;
+  if (m.has_spp()) goal.spp = m.spp();
+  if (m.has_seconds()) goal.seconds = m.seconds();
+  if (m.has_rel_error()) goal.rel_error = m.rel_error();
+  return {decode(m.crop()), m.seed(), goal};
+}
+
 LoadSceneRequest decode(const v1::LoadScene& m) {
-  return {m.scene_key(), m.folder(), m.entry(), static_cast<int>(m.width()), static_cast<int>(m.height()), m.integrator()};
+  return {m.scene_key(),  m.folder(),         m.entry(), static_cast<int>(m.width()), static_cast<int>(m.height()),
+          m.integrator(), decode(m.picture())};
 }
 
 RenderTilesRequest decode(const v1::RenderTiles& m) {

@@ -39,7 +39,8 @@ bool cut_to_time(SampleRange& pass, double seconds, const TimelinePoint& now) {
 }  // namespace
 
 FrameResult render_frame(const Scene& scene, const Integrator& integrator, const FrameSettings& settings,
-                         const std::atomic<bool>& cancelled, const std::function<void(const TimelinePoint&)>& after_pass) {
+                         const std::atomic<bool>& cancelled, const std::function<void(const TimelinePoint&)>& after_pass,
+                         const PilotSamples& known) {
   FrameResult result{Film(scene.film().width, scene.film().height, settings.crop, light_layers(scene.census()),
                           integrator.bias() != Integrator::Bias::kNone),
                      {},
@@ -62,13 +63,16 @@ FrameResult render_frame(const Scene& scene, const Integrator& integrator, const
     for (std::uint32_t done = round->samples.begin; done < round->samples.end;) {
       SampleRange pass = next_pass(done, round->samples.end);
       if (goal.seconds && !result.timeline.empty() && !cut_to_time(pass, *goal.seconds, result.timeline.back())) break;
+      const std::optional<std::shared_ptr<const PreparedPass>> known_pass = known.pass(settings.seed, pass);
       const std::shared_ptr<const PreparedPass> prepared =
-          integrator.prepare_pass(settings.seed, pass, settings.threads, cancelled);
+          known_pass ? *known_pass : integrator.prepare_pass(settings.seed, pass, settings.threads, cancelled);
       if (prepared) result.rays += prepared->rays();
       parallel_for(round->tiles.size(), settings.threads, [&](std::size_t index, int thread) {
-        prepare_render_thread();
-        const TileTask task{tiles[round->tiles[index]], pass, settings.seed, prepared.get()};
+        const PixelRect rect = tiles[round->tiles[index]];
         // Tiles are disjoint: threads write to different pixels of the film, and only the counter is shared.
+        if (const TileSums* sums = known.tile(settings.seed, pass, rect)) return result.film.merge(*sums);
+        prepare_render_thread();
+        const TileTask task{rect, pass, settings.seed, prepared.get()};
         result.film.merge(render_tile(scene, integrator, task, queries[static_cast<std::size_t>(thread)], cancelled));
       });
       done = pass.end;

@@ -9,16 +9,11 @@
 #include <vector>
 
 #include "film/film.h"
+#include "film/goal.h"
 #include "integrators/integrator.h"
+#include "worker/pilot_samples.h"
 
 namespace fluxfarm {
-
-// When to stop. Exactly one is set.
-struct Goal {
-  std::optional<std::uint32_t> spp;
-  std::optional<double> seconds;    // wall time of the passes
-  std::optional<double> rel_error;  // sqrt(relMSE), with 95 % confidence (film/error_goal.h)
-};
 
 struct FrameSettings {
   PixelRect crop;
@@ -47,8 +42,10 @@ struct FrameResult {
   std::vector<std::string> warnings;
 };
 
-// `after_pass` is called at each pass barrier; it may be empty. Throws CancelledError when `cancelled` becomes true.
+// `after_pass` is called at each pass barrier; it may be empty. What a pilot made of this picture is taken from `known`; the bits
+// are the same without it. Throws CancelledError when `cancelled` becomes true.
 FrameResult render_frame(const Scene& scene, const Integrator& integrator, const FrameSettings& settings,
-                         const std::atomic<bool>& cancelled, const std::function<void(const TimelinePoint&)>& after_pass = {});
+                         const std::atomic<bool>& cancelled, const std::function<void(const TimelinePoint&)>& after_pass = {},
+                         const PilotSamples& known = {});
 
 }  // namespace fluxfarm

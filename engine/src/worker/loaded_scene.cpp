@@ -4,11 +4,26 @@
 
 #include "integrators/audit/light_audit.h"
 #include "io/scene_reader.h"
+#include "support/error.h"
 #include "worker/plan.h"
 
 namespace fluxfarm {
+namespace {
 
-std::shared_ptr<const LoadedScene> load_scene(const LoadSceneRequest& request, int threads) {
+// The picture for which a method is asked, with what the scene says of it.
+Picture settled(const LoadSceneRequest::Picture& asked, const SceneLoadedReply& info) {
+  const PixelRect crop = asked.crop.empty() ? info.crop : asked.crop;
+  if (!PixelRect{0, 0, info.width, info.height}.contains(crop)) {
+    throw SettingError("crop = " + std::to_string(crop.x) + "," + std::to_string(crop.y) + " " + std::to_string(crop.width) + "x" +
+                       std::to_string(crop.height) + ": expected a part of the frame, " + std::to_string(info.width) + "x" +
+                       std::to_string(info.height) + " pixels");
+  }
+  return {crop, asked.seed, settled(asked.goal, info.scene_spp)};
+}
+
+}  // namespace
+
+std::shared_ptr<const LoadedScene> load_scene(const LoadSceneRequest& request, int threads, const std::atomic<bool>& cancelled) {
   const auto start = std::chrono::steady_clock::now();
   SceneDescription description = read_scene(request.folder, request.entry, {});
   FilmDescription& film = description.film;
@@ -16,18 +31,18 @@ std::shared_ptr<const LoadedScene> load_scene(const LoadSceneRequest& request, i
     // Another size makes another frame: the file's crop has no meaning in it.
     film = {request.width, request.height, 0, 0, 0, 0, film.filter};
   }
-  auto loaded = std::make_shared<LoadedScene>(LoadedScene{{}, Scene(description, threads), nullptr});
-  loaded->integrator = make_integrator(request.integrator, loaded->scene);
-
+  auto loaded = std::make_shared<LoadedScene>(LoadedScene{{}, Scene(description, threads), {}});
   const PixelRect full{0, 0, film.width, film.height};
   SceneLoadedReply& info = loaded->info;
   info.width = film.width;
   info.height = film.height;
   info.scene_spp = description.samples_per_pixel;
   info.crop = film.crop_width > 0 ? PixelRect{film.crop_x, film.crop_y, film.crop_width, film.crop_height} : full;
-  info.integrator = loaded->integrator->name();
+  Method& method = loaded->method;
+  method = make_method(request.integrator, loaded->scene, settled(request.picture, info), threads, cancelled);
+  info.integrator = method.integrator->name();
   info.warnings = loaded->scene.warnings();
-  info.plan_json = plan_json(loaded->scene, *loaded->integrator);
+  info.plan_json = plan_json(loaded->scene, *method.integrator, method.choice ? &*method.choice : nullptr);
   info.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return loaded;
 }

@@ -12,6 +12,7 @@
 #include "film/light_audit.h"
 #include "integrators/integrator.h"
 #include "worker/messages.h"
+#include "worker/pilot.h"
 
 namespace fluxfarm {
 
@@ -35,12 +36,12 @@ class AuditMemory {
 struct LoadedScene {
   SceneLoadedReply info;
   Scene scene;
-  std::unique_ptr<Integrator> integrator;
+  Method method;
   std::unique_ptr<AuditMemory> audits = std::make_unique<AuditMemory>();
 };
 
-// Reads, compiles and prepares. Throws SceneError, SettingError or ResourceError.
-std::shared_ptr<const LoadedScene> load_scene(const LoadSceneRequest& request, int threads);
+// Reads, compiles and prepares. Throws SceneError, SettingError or ResourceError; CancelledError when a pilot is cancelled.
+std::shared_ptr<const LoadedScene> load_scene(const LoadSceneRequest& request, int threads, const std::atomic<bool>& cancelled);
 
 // A scene that is there or on its way; get() waits for it and throws what loading it threw.
 using SceneFuture = std::shared_future<std::shared_ptr<const LoadedScene>>;

@@ -10,11 +10,12 @@
 
 #include "film/error_goal.h"
 #include "film/film.h"
+#include "film/goal.h"
 #include "film/pixel_rect.h"
 
 namespace fluxfarm {
 
-inline constexpr std::uint32_t kProtocolVersion = 4;
+inline constexpr std::uint32_t kProtocolVersion = 5;
 
 // ---------------------------------------------------------------- requests
 
@@ -25,7 +26,12 @@ struct LoadSceneRequest {
   SceneKey key;
   std::filesystem::path folder, entry;
   int width = 0, height = 0;  // 0: as the scene says
-  std::string integrator;     // "": as the scene says
+  std::string integrator;     // "": as the scene says; "auto": for the picture that follows
+  struct Picture {
+    PixelRect crop;  // empty: as the scene says
+    std::uint64_t seed = 0;
+    Goal goal;  // none: as the scene says
+  } picture;
 };
 
 struct RenderTilesRequest {

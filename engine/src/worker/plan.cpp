@@ -13,16 +13,41 @@ nlohmann::json part(const char* name, bool on, const std::string& reason) {
 
 std::string count(std::size_t number, const char* noun) { return std::to_string(number) + " " + noun + (number == 1 ? "" : "s"); }
 
+nlohmann::json as_json(const Goal& goal) {
+  if (goal.rel_error) return {{"rel_error", *goal.rel_error}};
+  if (goal.seconds) return {{"seconds", *goal.seconds}};
+  return {{"spp", goal.spp.value_or(0)}};
+}
+
+nlohmann::json as_json(const MethodChoice& choice) {
+  nlohmann::json methods = nlohmann::json::array();
+  for (const MethodCandidate& candidate : choice.candidates) {
+    nlohmann::json method = {{"method", candidate.method}, {"tried", candidate.forecast.has_value()}, {"reason", candidate.reason}};
+    if (candidate.forecast) {
+      method["error"] = candidate.forecast->error;
+      method["samples"] = candidate.forecast->samples;
+      method["seconds"] = candidate.forecast->seconds;
+      method["work"] = candidate.forecast->work;
+    }
+    methods.push_back(method);
+  }
+  return {{"reason", choice.reason},
+          {"goal", as_json(choice.goal)},
+          {"seconds", choice.seconds},
+          {"expected_seconds", choice.expected_seconds},
+          {"methods", methods}};
+}
+
 }  // namespace
 
-std::string plan_json(const Scene& scene, const Integrator& integrator) {
+std::string plan_json(const Scene& scene, const Integrator& integrator, const MethodChoice* choice) {
   const Census& census = scene.census();
   const std::size_t emitters =
       census.area_emitters + census.point_emitters + census.spot_emitters + census.directional_emitters + census.environment_map;
   const AuditNeed audit = audit_need(scene);
   const bool photon_maps = integrator.store() == Integrator::Store::kPhotonMaps;
   const bool irradiance_cache = integrator.store() == Integrator::Store::kIrradianceCache;
-  const nlohmann::json plan = {
+  nlohmann::json plan = {
       {"integrator", integrator.name()},
       {"census",
        {{"shapes", census.shapes},
@@ -72,6 +97,7 @@ std::string plan_json(const Scene& scene, const Integrator& integrator) {
         part("volume layer", census.media > 0, census.media > 0 ? "a medium" : "no medium"),
         part("shading normals", census.shading_normals,
              census.shading_normals ? "a mesh with normals" : "all surfaces flat or exact")}}};
+  if (choice != nullptr) plan["choice"] = as_json(*choice);
   return plan.dump();
 }
 

@@ -107,15 +107,16 @@ class Worker {
     // Known from now on, so that tiles may be asked for before it is loaded: they wait for it. Loading is urgent, hence begun
     // before any of them.
     SceneFuture scene = scenes_.find(request.key);
-    std::shared_ptr<std::packaged_task<std::shared_ptr<const LoadedScene>()>> loading;
+    using Loading = std::packaged_task<std::shared_ptr<const LoadedScene>(const std::atomic<bool>&)>;
+    std::shared_ptr<Loading> loading;
     if (!scene.valid()) {
-      loading = std::make_shared<std::packaged_task<std::shared_ptr<const LoadedScene>()>>(
-          [this, request] { return load_scene(request, threads_); });
+      loading = std::make_shared<Loading>(
+          [this, request](const std::atomic<bool>& cancelled) { return load_scene(request, threads_, cancelled); });
       scene = loading->get_future().share();
       scenes_.keep(request.key, scene);
     }
-    start(id, [this, scene, loading, key = request.key](const std::atomic<bool>&) -> ReplyBody {
-      if (loading) (*loading)();
+    start(id, [this, scene, loading, key = request.key](const std::atomic<bool>& cancelled) -> ReplyBody {
+      if (loading) (*loading)(cancelled);
       try {
         return scene.get()->info;
       } catch (...) {
@@ -134,8 +135,8 @@ class Worker {
       if (!scene.valid()) return merger_.merge(request);
       const LoadedScene& loaded = *scene.get();
       const LightAudit audit =
-          loaded.audits->find(loaded.scene, *loaded.integrator, request.crop, request.info.seed, threads_, cancelled);
-      return merger_.merge(request, &audit, loaded.integrator->bias() != Integrator::Bias::kFixed);
+          loaded.audits->find(loaded.scene, *loaded.method.integrator, request.crop, request.info.seed, threads_, cancelled);
+      return merger_.merge(request, &audit, loaded.method.integrator->bias() != Integrator::Bias::kFixed);
     });
   }
   void handle(std::uint64_t id, WriteTileRequest request) {
@@ -187,11 +188,8 @@ class Worker {
       const LoadedScene& loaded = *scene.get();
       const Clock::time_point start = Clock::now();
       RayQueries queries(loaded.scene.accelerator());
-      const std::shared_ptr<const PreparedPass> pass =
-          passes_.find(request.key, *loaded.integrator, request.seed, request.samples, threads_, running.cancelled);
-      const TileTask task{request.tiles[tile], request.samples, request.seed, pass.get()};
-      const TileSums sums = render_tile(loaded.scene, *loaded.integrator, task, queries, running.cancelled,
-                                        [&](std::uint64_t samples) { tell_progress(id, running, samples); });
+      const TileSums sums = sums_of(loaded, request, tile, queries, running.cancelled,
+                                    [&](std::uint64_t samples) { tell_progress(id, running, samples); });
       const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
       if (!running.cancelled) {
         const std::uint64_t bytes = write_tile_file(request.file(tile), sums);
@@ -209,6 +207,17 @@ class Worker {
     } else {
       reply(id, TilesDoneReply{});
     }
+  }
+
+  // From the pilot, where it has them.
+  TileSums sums_of(const LoadedScene& loaded, const RenderTilesRequest& request, std::uint32_t tile, RayQueries& queries,
+                   const std::atomic<bool>& cancelled, const std::function<void(std::uint64_t)>& progress) {
+    const auto& [integrator, choice, known] = loaded.method;
+    if (const TileSums* sums = known.tile(request.seed, request.samples, request.tiles[tile])) return *sums;
+    std::optional<std::shared_ptr<const PreparedPass>> pass = known.pass(request.seed, request.samples);
+    if (!pass) pass = passes_.find(request.key, *integrator, request.seed, request.samples, threads_, cancelled);
+    const TileTask task{request.tiles[tile], request.samples, request.seed, pass->get()};
+    return render_tile(loaded.scene, *integrator, task, queries, cancelled, progress);
   }
 
   // The first failure ends the other tiles of the request, and answers it when they have ended: until then they may write files.

@@ -271,9 +271,9 @@ TEST(VolumePath, SceneWithoutMediaRunsNoVolumeCode) {
   SceneBuilder plain;
   plain.floor(0, 1, plain.diffuse(0.5f));
   const Scene without(plain.description(), 1);
-  EXPECT_NE(dynamic_cast<PathIntegrator*>(make_integrator("auto", without).get()), nullptr);
+  EXPECT_NE(dynamic_cast<PathIntegrator*>(make_integrator("path", without).get()), nullptr);
   const Scene with(ball(grey(1, 1), 1).description(), 1);
-  EXPECT_NE(dynamic_cast<VolumePathIntegrator*>(make_integrator("auto", with).get()), nullptr);
+  EXPECT_NE(dynamic_cast<VolumePathIntegrator*>(make_integrator("path", with).get()), nullptr);
 }
 
 TEST(VolumePath, PixelsDoNotDependOnTilesOrThreads) {

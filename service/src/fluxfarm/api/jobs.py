@@ -136,7 +136,7 @@ async def _checked(body: JobIn, farm: Services) -> JobRequest:
         builtin=body.scene.builtin,
         size=None if size is None else (size.width, size.height),
         crop=None if crop is None else PixelRect(crop.x, crop.y, crop.width, crop.height),
-        integrator=None if body.integrator == "auto" else body.integrator,
+        integrator=body.integrator,
         goal=Goal(**goal),
         limits=Limits(**body.limits.model_dump()),
         priority=body.priority,

@@ -91,7 +91,10 @@ class JobIn(Strict):
     scene: SceneIn
     size: SizeIn | None = None
     crop: CropIn | None = None
-    integrator: Integrator | None = Field(default=None, description="Method; absent or `auto`: the service chooses.")
+    integrator: Integrator | None = Field(
+        default=None,
+        description="Method; absent: the scene's own; `auto`: a pilot chooses the one that takes the least work.",
+    )
     goal: GoalIn | None = Field(
         default=None, description="Absent: the scene's own sample count, else 64 samples per pixel."
     )

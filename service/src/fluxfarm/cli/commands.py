@@ -209,6 +209,27 @@ def doctor() -> None:
 
 
 @app.command()
+def plan(
+    scene: SceneArgument,
+    rel_error: RelErrorOption = None,
+    spp: SppOption = None,
+    seconds: SecondsOption = None,
+    integrator: IntegratorOption = None,
+    size: SizeOption = None,
+    crop: CropOption = None,
+    seed: SeedOption = 0,
+    threads: Annotated[int | None, typer.Option("--threads", help="Threads of a pilot.")] = None,
+    as_json: Annotated[bool, typer.Option("--json", help="As JSON.")] = False,
+) -> None:
+    """Say which method and which parts of the engine SCENE needs, and why. No service is asked."""
+    options = JobOptions(rel_error, spp, seconds, integrator, size, crop, seed)
+    option_members(options)
+    from fluxfarm.cli.planning import plan_scene
+
+    plan_scene(scene, options, threads, as_json)
+
+
+@app.command()
 def chart(
     scenes: Annotated[
         list[str], typer.Argument(metavar="SCENE...", help="Scene files (.xml, .json) or built-in names.")

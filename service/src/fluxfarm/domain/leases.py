@@ -1,17 +1,30 @@
 """Work for engine processes, complete in itself, and what comes back from it."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import StrEnum
 from pathlib import Path
 
+from fluxfarm.domain.goal import Goal
 from fluxfarm.domain.records import SceneFacts
 from fluxfarm.domain.schedule import Round, SampleRange
 from fluxfarm.domain.tiles import PixelRect
 
 
 @dataclass(frozen=True, slots=True)
+class Picture:
+    """What a method is chosen for. `crop` None: as the scene says; the same for a goal with nothing set."""
+
+    crop: PixelRect | None
+    seed: int
+    goal: Goal
+
+
+@dataclass(frozen=True, slots=True)
 class SceneRef:
-    """A scene for an engine process. `key` differs whenever anything below differs; zeros and "": as the scene says."""
+    """A scene for an engine process. Zeros and "": as the scene says.
+
+    `key` differs whenever anything below differs, with one exception: the integrator "auto" for a picture has the key
+    of the method that is chosen for it."""
 
     key: str
     folder: Path
@@ -19,6 +32,11 @@ class SceneRef:
     width: int
     height: int
     integrator: str
+    picture: Picture | None = None
+
+    def with_method(self, chosen: str) -> "SceneRef":
+        """The same once a method was chosen for its picture; of a scene with a method, the scene itself."""
+        return self if self.picture is None else replace(self, integrator=chosen, picture=None)
 
 
 @dataclass(frozen=True, slots=True)

@@ -9,6 +9,7 @@ import hashlib
 import json
 import time
 from collections.abc import Callable, Sequence
+from dataclasses import asdict
 from pathlib import Path
 
 from fluxfarm.domain.job import JobState
@@ -19,6 +20,7 @@ from fluxfarm.domain.leases import (
     LeaseLost,
     MergeLease,
     Outcome,
+    Picture,
     PrepareLease,
     SceneRef,
     WriteTileLease,
@@ -29,6 +31,7 @@ from fluxfarm.orchestrator.committer import Committer
 from fluxfarm.orchestrator.run import JobRun
 from fluxfarm.ports import BlobStore, Ledger, WorkerInfo, WorkerPool
 
+AUTO = "auto"
 WINDOW = 2
 # Above this, rendering waits until the disk has caught up.
 MOST_BACKLOG_BYTES = 128 << 20
@@ -155,10 +158,15 @@ class Dispatcher:
         )
 
 
-def scene_ref(request: JobRequest, folder: Path) -> SceneRef:
-    """The scene of a request as engine processes know it: the key covers the files and everything set over them."""
+def scene_ref(request: JobRequest, folder: Path, chosen: str | None) -> SceneRef:
+    """The scene of a request as engine processes know it: the key covers the files and everything set over them.
+    `chosen` is the method that was chosen for the job before, if it was."""
     width, height = request.size or (0, 0)
-    integrator = request.integrator or ""
-    settled = json.dumps([request.bundle.digest(), width, height, integrator])
-    key = hashlib.sha256(settled.encode()).hexdigest()
-    return SceneRef(key, folder, request.bundle.entry, width, height, integrator)
+    settled: list[object] = [request.bundle.digest(), width, height, request.integrator or ""]
+    picture = None
+    if request.integrator == AUTO:
+        picture = Picture(request.crop, request.seed, request.goal)
+        settled.append(asdict(picture))
+    key = hashlib.sha256(json.dumps(settled).encode()).hexdigest()
+    scene = SceneRef(key, folder, request.bundle.entry, width, height, request.integrator or "", picture)
+    return scene if chosen is None else scene.with_method(chosen)

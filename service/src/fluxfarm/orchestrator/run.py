@@ -97,6 +97,7 @@ class JobRun:
         """The scene is known: begin, or go on from what the ledger holds."""
         self.state = JobState.RUNNING
         self.facts, self._grid = facts, grid
+        self.scene = self.scene.with_method(facts.integrator)
         self._goal = settled(self.request.goal, facts.scene_spp)
         self._round = first_round(self._goal, self.request.limits)
         self._running_since = now

@@ -39,7 +39,8 @@ class Runs:
         """Take an unfinished job into memory, resolving a state that a restart left in the middle."""
         record = await self._ledger.job(job_id)
         folder = await self._blobs.scene_folder(record.request.bundle)
-        run = JobRun(record, scene_ref(record.request, folder))
+        chosen = None if record.facts is None else record.facts.integrator
+        run = JobRun(record, scene_ref(record.request, folder, chosen))
         if record.state is JobState.PREPARING:
             await self.change(run, JobState.QUEUED)
         elif record.state is JobState.FINALIZING:

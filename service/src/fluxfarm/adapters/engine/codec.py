@@ -15,6 +15,7 @@ from fluxfarm.domain.leases import (
     Merged,
     MergeLease,
     Outcome,
+    Picture,
     Prepared,
     PrepareLease,
     RenderLease,
@@ -29,7 +30,7 @@ from fluxfarm.domain.records import SceneFacts
 from fluxfarm.domain.schedule import Round, SampleRange
 from fluxfarm.domain.tiles import PixelRect
 
-PROTOCOL_VERSION = 4
+PROTOCOL_VERSION = 5
 MAX_FRAME_BYTES = 64 << 20
 LENGTH = struct.Struct("<I")
 
@@ -71,6 +72,7 @@ def load_scene(request_id: int, scene: SceneRef) -> bytes:
         width=scene.width,
         height=scene.height,
         integrator=scene.integrator,
+        picture=None if scene.picture is None else _picture(scene.picture),
     )
     return _frame(pb.Request(request_id=request_id, load_scene=body))
 
@@ -158,6 +160,17 @@ def failure_of(reply: Reply, work: Lease) -> LeaseFailed | None:
 def _frame(request: pb.Request) -> bytes:
     body = request.SerializeToString()
     return LENGTH.pack(len(body)) + body
+
+
+def _picture(picture: Picture) -> pb.Picture:
+    goal, crop = picture.goal, picture.crop
+    return pb.Picture(
+        crop=None if crop is None else _rect(crop),
+        seed=picture.seed,
+        rel_error=goal.rel_error,
+        spp=goal.spp,
+        seconds=goal.seconds,
+    )
 
 
 def _render_tiles(work: RenderLease) -> pb.RenderTiles:

@@ -1,0 +1,81 @@
+#include "integrators/plan/method_forecast.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "film/error_goal.h"
+#include "integrators/irradiance/cache_quality.h"
+
+namespace fluxfarm {
+namespace {
+
+// relMSE by noise falls as samples^-kFall.
+constexpr double kFall = 1.15;
+
+// What the bound of an error goal and rounds that double samples add: a picture is done when its error is so much below its goal.
+constexpr double kMargin = 0.8;
+
+// Of the next level of a cache over the one before: the rays that it takes, first and later, and the squared bias that it leaves.
+constexpr double kSecondLevel = 1.7, kNextLevel = 2.25, kBiasLeft = 1 / 3.7;
+
+struct Levels {
+  double work = 0, bias = 1;  // over those of the first
+};
+
+Levels levels(double samples) {
+  Levels all{1, 1};
+  double next = kSecondLevel;
+  for (double end = kFirstCacheLevel; samples > end; end *= 8) {
+    all.work += next;
+    all.bias *= kBiasLeft;
+    next *= kNextLevel;
+  }
+  return all;
+}
+
+double mean(const std::vector<double>& values) {
+  double sum = 0;
+  for (const double value : values) sum += value;
+  return sum / static_cast<double>(values.size());
+}
+
+// Where tiles take samples in proportion to their standard deviations, the noise that equal samples would leave falls to this
+// part of it, beyond the first round.                                                                        [Neyman34]
+double spread_gain(const std::vector<double>& noise) {
+  double deviations = 0;
+  for (const double value : noise) deviations += std::sqrt(value);
+  deviations /= static_cast<double>(noise.size());
+  const double all = mean(noise);
+  return all > 0 ? deviations * deviations / all : 1;
+}
+
+MethodForecast forecast_spread(const MethodTrial& trial, double samples, double gain) {
+  const Levels level = trial.in_levels ? levels(samples) : Levels{1, 1};
+  const double noise = (mean(trial.noise) * gain + trial.unmet_noise) * std::pow(kFirstRound / samples, kFall);
+  MethodForecast result;
+  result.samples = samples;
+  result.error = std::sqrt(noise + trial.bias * level.bias);
+  result.work = trial.work_ahead * level.work + trial.work_per_sample * samples;
+  result.seconds = result.work * trial.seconds_per_work;
+  return result;
+}
+
+}  // namespace
+
+MethodForecast forecast_samples(const MethodTrial& trial, double samples) { return forecast_spread(trial, samples, 1); }
+
+MethodForecast forecast(const MethodTrial& trial, const Goal& goal) {
+  if (goal.spp) return forecast_samples(trial, *goal.spp);
+  // Samples go up by tenths until the goal, or the time, is met.
+  const double gain = goal.rel_error ? spread_gain(trial.noise) : 1;
+  MethodForecast result = forecast_spread(trial, goal.rel_error ? kFirstRound : 1, 1);
+  for (double samples = result.samples; samples < kMostForecast; samples *= 1.1) {
+    const MethodForecast next = forecast_spread(trial, samples, samples > kFirstRound ? gain : 1);
+    if (goal.seconds && next.seconds > *goal.seconds) break;
+    result = next;
+    if (goal.rel_error && result.error <= kMargin * *goal.rel_error) break;
+  }
+  return result;
+}
+
+}  // namespace fluxfarm

@@ -1,0 +1,65 @@
+"""`fluxfarm plan` and `fluxfarm-engine plan` with the real engine: the method that "auto" takes, and why."""
+
+import json
+import subprocess
+import sys
+
+import pytest
+from conftest import ENGINE, ROOT
+
+COMMAND = [sys.executable, "-c", "from fluxfarm.cli import main; main()", "plan"]
+AUTO = ("--integrator", "auto", "--size", "96x64")
+
+
+def plan(*options: object) -> subprocess.CompletedProcess[str]:
+    return subprocess.run([*COMMAND, *map(str, options)], capture_output=True, text=True, check=False)
+
+
+def test_plan_foretells_each_method_or_says_why_it_was_left_out() -> None:
+    choice = json.loads(plan("cornell-glass", *AUTO, "--rel-error", 0.05, "--json").stdout)["choice"]
+    methods = {method["method"]: method for method in choice["methods"]}
+    assert set(methods) == {"path", "photon-progressive", "irradiance-cache", "photon"}
+    assert choice["goal"] == {"rel_error": 0.05}
+    for method in methods.values():
+        if method["tried"]:
+            assert method["error"] <= 0.05
+            assert method["samples"] >= 16
+            assert method["work"] > 0 < method["seconds"]
+        else:
+            assert len(method["reason"]) > 10
+    assert methods["path"]["work"] > 2 * methods["photon-progressive"]["work"], "paths do not find small lamps in glass"
+    assert choice["seconds"] < choice["expected_seconds"]
+
+
+def test_words_are_those_of_the_engine() -> None:
+    scene, goal = ROOT / "scenes" / "cornell" / "scene.xml", ("--spp", "64")
+    told = plan("cornell", *AUTO, *goal).stdout
+    assert "integrator: irradiance-cache\nchosen for: least squared error times work: path would take " in told
+    assert "photon-progressive     left out: no light reaches a surface by mirrors, glass or gloss" in told
+    alone = subprocess.run([ENGINE, "plan", scene, *AUTO, *goal], capture_output=True, text=True, check=True).stdout
+    without_clock = [line for line in told.splitlines() if " in about " not in line]
+    assert without_clock == [line for line in alone.splitlines() if " in about " not in line]
+
+
+def test_a_method_that_is_named_is_not_chosen() -> None:
+    told = json.loads(plan("cornell", "--integrator", "photon-progressive", "--json").stdout)
+    assert told["integrator"] == "photon-progressive"
+    assert "choice" not in told
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        (("cornell", "--integrator", "magic"), 'integrator = "magic", expected auto, path'),
+        (("cornell", "--spp", 4, "--seconds", 4), "at most one of --rel-error, --spp and --seconds"),
+        (("nowhere.xml",), "nowhere.xml: there is no such file"),
+        (("nowhere",), "nowhere: expected a scene file or a built-in name"),
+        (("cornell", "--crop", "0,0,9999,1"), "expected a part of the 512x512 frame"),
+    ],
+    ids=str,
+)
+def test_bad_input_is_one_error(options: tuple[object, ...], words: str) -> None:
+    result = plan(*options)
+    assert result.returncode == 2
+    assert words in result.stderr
+    assert result.stderr.count("\n") == 1
