@@ -1,10 +1,20 @@
 #include "method_options.h"
 
+#include <algorithm>
+#include <cctype>
+
 namespace fluxfarm {
 
 void add_method_option(CLI::App& command, std::string& integrator) {
   command.add_option("--integrator", integrator,
-                     "Method: auto, path, photon, photon-progressive or irradiance-cache; default: as the scene says");
+                     "Method: auto, path, photon, photon-progressive or irradiance-cache; default: as the scene says, of glTF auto");
+}
+
+std::string method_for(const std::string& integrator, const std::filesystem::path& scene) {
+  std::string ending = scene.extension().string();
+  std::ranges::transform(ending, ending.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const bool is_gltf = ending == ".glb" || ending == ".gltf";
+  return integrator.empty() && is_gltf ? "auto" : integrator;
 }
 
 void add_goal_options(CLI::App& command, Goal& goal) {

@@ -22,7 +22,7 @@ from fluxfarm.peers.running import run_peer
 ENGINE = peers.ROOT / ".venv" / "bin" / "fluxfarm-engine"
 REFERENCE_SPP = 2048
 CAUSTIC_SHARE = 0.5
-METHODS = ("path", "photon", "photon-progressive")
+METHODS = ("path", "photon", "irradiance-cache", "photon-progressive")
 
 
 def render(scene: Path, out: Path, method: str, *goal: object) -> tuple[np.ndarray, np.ndarray, float]:

@@ -54,7 +54,7 @@ def render_runs(name: str, tmp_path: Path, runs: int, spp: int) -> Runs:
     width, height = reference["width"], reference["height"]
     images = []
     for seed in range(runs):
-        options = ("--size", f"{width}x{height}", "--spp", spp, "--seed", seed + 1)
+        options = ("--size", f"{width}x{height}", "--spp", spp, "--seed", seed + 1, "--integrator", "path")
         images.append(beauty(render_alone(scene, tmp_path / "image.exr", *options)))
     shape = (runs, height // block, block, width // block, block, 3)
     return Runs(reference, np.stack(images).reshape(shape).mean((2, 4)))

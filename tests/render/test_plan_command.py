@@ -1,14 +1,32 @@
 """`fluxfarm plan` and `fluxfarm-engine plan` with the real engine: the method that "auto" takes, and why."""
 
+import base64
 import json
 import subprocess
 import sys
+from pathlib import Path
 
+import numpy as np
 import pytest
 from conftest import ENGINE, ROOT
 
 COMMAND = [sys.executable, "-c", "from fluxfarm.cli import main; main()", "plan"]
 AUTO = ("--integrator", "auto", "--size", "96x64")
+
+
+CORNERS = base64.b64encode(np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0]], np.float32).tobytes()).decode()
+POSITION = {"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3", "min": [0, 0, 0], "max": [1, 1, 0]}
+TRIANGLE = {
+    "asset": {"version": "2.0"},
+    "scene": 0,
+    "scenes": [{"nodes": [0]}],
+    "nodes": [{"mesh": 0}],
+    "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "material": 0}]}],
+    "materials": [{"emissiveFactor": [1, 1, 1]}],
+    "accessors": [POSITION],
+    "bufferViews": [{"buffer": 0, "byteLength": 36}],
+    "buffers": [{"byteLength": 36, "uri": "data:application/octet-stream;base64," + CORNERS}],
+}
 
 
 def plan(*options: object) -> subprocess.CompletedProcess[str]:
@@ -45,6 +63,13 @@ def test_a_method_that_is_named_is_not_chosen() -> None:
     told = json.loads(plan("cornell", "--integrator", "photon-progressive", "--json").stdout)
     assert told["integrator"] == "photon-progressive"
     assert "choice" not in told
+
+
+def test_gltf_has_no_method_of_its_own_so_one_is_chosen(tmp_path: Path) -> None:
+    scene = tmp_path / "triangle.gltf"
+    scene.write_text(json.dumps(TRIANGLE))
+    assert "choice" in json.loads(plan(scene, "--json", "--rel-error", 0.1, "--size", "32x32").stdout)
+    assert "choice" not in json.loads(plan(scene, "--json", "--integrator", "path").stdout)
 
 
 @pytest.mark.parametrize(

@@ -9,6 +9,7 @@ from fluxfarm.adapters.engine import codec
 from fluxfarm.adapters.protocol import engine_pb2 as pb
 from fluxfarm.domain.goal import Goal
 from fluxfarm.domain.leases import Picture
+from fluxfarm.domain.scene import SceneBundle
 from fluxfarm.domain.tiles import PixelRect
 from fluxfarm.orchestrator.dispatch import scene_ref
 
@@ -22,6 +23,14 @@ def test_a_method_is_chosen_for_a_picture_and_kept_under_the_same_key() -> None:
     told = asked.with_method("irradiance-cache")
     assert (told.key, told.integrator, told.picture) == (asked.key, "irradiance-cache", None)
     assert scene_ref(AUTO, FOLDER, "irradiance-cache") == told, "a restart must not choose again"
+
+
+def test_gltf_has_no_method_of_its_own_so_one_is_chosen() -> None:
+    bare = replace(REQUEST, bundle=SceneBundle("Chair.GLB", {"Chair.GLB": "0" * 64}))
+    asked = scene_ref(bare, FOLDER, None)
+    assert (asked.integrator, asked.picture) == ("auto", Picture(None, bare.seed, bare.goal))
+    assert scene_ref(replace(bare, integrator="path"), FOLDER, None).integrator == "path"
+    assert scene_ref(REQUEST, FOLDER, None).integrator == "", "a Mitsuba scene has one"
 
 
 def test_another_picture_has_another_key() -> None:

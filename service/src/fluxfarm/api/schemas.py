@@ -93,7 +93,7 @@ class JobIn(Strict):
     crop: CropIn | None = None
     integrator: Integrator | None = Field(
         default=None,
-        description="Method; absent: the scene's own; `auto`: a pilot chooses the one that takes the least work.",
+        description="Method; `auto`: the one that takes the least work; absent: the scene's own, of glTF `auto`.",
     )
     goal: GoalIn | None = Field(
         default=None, description="Absent: the scene's own sample count, else 64 samples per pixel."

@@ -10,6 +10,9 @@ from fluxfarm.domain.scene import SceneBundle
 from fluxfarm.domain.schedule import Round, SampleRange
 from fluxfarm.domain.tiles import PixelRect, TileGrid
 
+# The integrator that a pilot chooses.
+AUTO = "auto"
+
 
 @dataclass(frozen=True, slots=True)
 class JobRequest:
@@ -25,6 +28,12 @@ class JobRequest:
     limits: Limits
     priority: int
     seed: int
+
+    @property
+    def method(self) -> str:
+        """The integrator to render with; "" is the scene's own. A glTF file has no word for one, so it gets AUTO."""
+        is_gltf = self.bundle.entry.lower().endswith((".glb", ".gltf"))
+        return self.integrator or (AUTO if is_gltf else "")
 
 
 @dataclass(frozen=True, slots=True)

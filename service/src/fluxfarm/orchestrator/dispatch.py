@@ -25,13 +25,12 @@ from fluxfarm.domain.leases import (
     SceneRef,
     WriteTileLease,
 )
-from fluxfarm.domain.records import JobRequest
+from fluxfarm.domain.records import AUTO, JobRequest
 from fluxfarm.errors import EngineTrouble
 from fluxfarm.orchestrator.committer import Committer
 from fluxfarm.orchestrator.run import JobRun
 from fluxfarm.ports import BlobStore, Ledger, WorkerInfo, WorkerPool
 
-AUTO = "auto"
 WINDOW = 2
 # Above this, rendering waits until the disk has caught up.
 MOST_BACKLOG_BYTES = 128 << 20
@@ -162,11 +161,11 @@ def scene_ref(request: JobRequest, folder: Path, chosen: str | None) -> SceneRef
     """The scene of a request as engine processes know it: the key covers the files and everything set over them.
     `chosen` is the method that was chosen for the job before, if it was."""
     width, height = request.size or (0, 0)
-    settled: list[object] = [request.bundle.digest(), width, height, request.integrator or ""]
+    settled: list[object] = [request.bundle.digest(), width, height, request.method]
     picture = None
-    if request.integrator == AUTO:
+    if request.method == AUTO:
         picture = Picture(request.crop, request.seed, request.goal)
         settled.append(asdict(picture))
     key = hashlib.sha256(json.dumps(settled).encode()).hexdigest()
-    scene = SceneRef(key, folder, request.bundle.entry, width, height, request.integrator or "", picture)
+    scene = SceneRef(key, folder, request.bundle.entry, width, height, request.method, picture)
     return scene if chosen is None else scene.with_method(chosen)
