@@ -65,6 +65,29 @@ def test_a_method_that_is_named_is_not_chosen() -> None:
     assert "choice" not in told
 
 
+CAUSTICS = {"caustic map", "projection map"}
+
+
+@pytest.mark.parametrize(
+    ("scene", "method", "parts"),
+    [
+        ("cornell", "path", set()),
+        ("cornell", "photon-progressive", set()),
+        ("cornell", "photon", {"global map"}),
+        ("cornell", "irradiance-cache", {"irradiance cache"}),
+        ("cornell-glass", "path", set()),
+        ("cornell-glass", "photon-progressive", CAUSTICS),
+        ("cornell-glass", "photon", CAUSTICS | {"global map"}),
+        ("cornell-glass", "irradiance-cache", CAUSTICS | {"irradiance cache"}),
+    ],
+)
+def test_plan_has_the_maps_that_the_method_makes_of_the_scene(scene: str, method: str, parts: set[str]) -> None:
+    told = {part["part"]: part for part in json.loads(plan(scene, "--integrator", method, "--json").stdout)["parts"]}
+    maps = {"caustic map", "projection map", "volume map", "global map", "irradiance cache"}
+    assert {name for name in maps if told[name]["on"]} == parts
+    assert told["volume map"]["reason"] == f"{method} makes none of this scene"
+
+
 def test_gltf_has_no_method_of_its_own_so_one_is_chosen(tmp_path: Path) -> None:
     scene = tmp_path / "triangle.gltf"
     scene.write_text(json.dumps(TRIANGLE))

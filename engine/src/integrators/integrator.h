@@ -52,6 +52,15 @@ class PreparedPass {
   virtual std::uint64_t rays() const = 0;  // that it took
 };
 
+// What a method keeps of light.
+struct MethodParts {
+  bool caustic_map = false, global_map = false, volume_map = false;  // of photons
+  bool projection_map = false;                                       // of the emitters' random numbers
+  bool irradiance_cache = false;
+
+  bool any() const { return caustic_map || global_map || volume_map || projection_map || irradiance_cache; }
+};
+
 class Integrator {
  public:
   virtual ~Integrator() = default;
@@ -61,9 +70,8 @@ class Integrator {
   enum class Bias { kNone, kFalling, kFixed };
   virtual Bias bias() const { return Bias::kNone; }
 
-  // What it makes ahead of its samples; told to whoever asks for a plan.
-  enum class Store { kNone, kPhotonMaps, kIrradianceCache };
-  virtual Store store() const { return Store::kNone; }
+  // What it makes of this scene ahead of its samples; after prepare().
+  virtual MethodParts parts() const { return {}; }
 
   // Whether it finds light of delta emitters over delta lobes, which no path that starts at the camera can.
   virtual bool finds_caustics() const { return false; }

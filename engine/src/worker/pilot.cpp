@@ -40,9 +40,9 @@ double sum(const std::vector<double>& values) {
 std::string percent(double share) { return std::to_string(std::lround(100 * share)) + " %"; }
 
 double work_of_ray(const Integrator& integrator) {
-  const bool cache = integrator.store() == Integrator::Store::kIrradianceCache;
-  const bool photons = integrator.store() == Integrator::Store::kPhotonMaps;
-  return cache ? integrator.finds_caustics() ? kRayWithBoth : kRayWithCache : photons ? kRayWithPhotons : 1;
+  const MethodParts parts = integrator.parts();
+  if (parts.irradiance_cache) return parts.caustic_map ? kRayWithBoth : kRayWithCache;
+  return parts.caustic_map ? kRayWithPhotons : 1;
 }
 
 // Of the brightest lamp, mean over R, G, B.
@@ -70,13 +70,13 @@ struct Contender {
   std::optional<MethodTrial> figures;
 };
 
-Contender contender(const std::string& method, const Scene& scene, const char* without_store) {
+Contender contender(const std::string& method, const Scene& scene, const char* without_parts) {
   Contender result{method, nullptr, {}, {}, 0, {}};
   try {
     result.integrator = make_integrator(method, scene);
-    if (result.integrator->store() == Integrator::Store::kNone) {
+    if (!result.integrator->parts().any()) {
       result.integrator.reset();
-      result.reason = without_store;
+      result.reason = without_parts;
     }
   } catch (const SettingError& error) {
     result.reason = error.what();
@@ -121,8 +121,7 @@ class PilotRun {
     for (double& noise : figures.noise) noise *= kLeftAfterFirstRound;
     figures.work_per_sample = ray * trial.rays_per_sample();
     // Photons are shot for each sample anew, a cache is made once.
-    const bool cache = contender.integrator->store() == Integrator::Store::kIrradianceCache;
-    figures.work_ahead = cache ? ray * trial.rays_ahead() : 0;
+    figures.work_ahead = contender.integrator->parts().irradiance_cache ? ray * trial.rays_ahead() : 0;
     figures.seconds_per_work = trial.seconds() / (ray * trial.rays());
   }
 

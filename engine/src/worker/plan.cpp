@@ -11,6 +11,10 @@ nlohmann::json part(const char* name, bool on, const std::string& reason) {
   return {{"part", name}, {"on", on}, {"reason", reason}};
 }
 
+nlohmann::json part_of_method(const char* name, bool on, const Integrator& integrator, const char* what_for) {
+  return part(name, on, on ? what_for : std::string(integrator.name()) + " makes none of this scene");
+}
+
 std::string count(std::size_t number, const char* noun) { return std::to_string(number) + " " + noun + (number == 1 ? "" : "s"); }
 
 nlohmann::json as_json(const Goal& goal) {
@@ -45,8 +49,7 @@ std::string plan_json(const Scene& scene, const Integrator& integrator, const Me
   const std::size_t emitters =
       census.area_emitters + census.point_emitters + census.spot_emitters + census.directional_emitters + census.environment_map;
   const AuditNeed audit = audit_need(scene);
-  const bool photon_maps = integrator.store() == Integrator::Store::kPhotonMaps;
-  const bool irradiance_cache = integrator.store() == Integrator::Store::kIrradianceCache;
+  const MethodParts of_method = integrator.parts();
   nlohmann::json plan = {
       {"integrator", integrator.name()},
       {"census",
@@ -74,8 +77,12 @@ std::string plan_json(const Scene& scene, const Integrator& integrator, const Me
         part("emitter choice", emitters > 1, count(emitters, "emitter") + " to choose from"),
         part("emitter tree", scene.emitters().by_place(), count(scene.emitters().candidates(), "emitter or triangle")),
         part("light-side audit", audit.kind == AuditNeed::kNeeded, audit.reason),
-        part("photon maps", photon_maps, photon_maps ? "the method has them" : "the method has none"),
-        part("irradiance cache", irradiance_cache, irradiance_cache ? "the method has one" : "the method has none"),
+        part_of_method("caustic map", of_method.caustic_map, integrator,
+                       "for light that mirrors, glass and gloss bring to surfaces"),
+        part_of_method("projection map", of_method.projection_map, integrator, "so that photons start towards what makes caustics"),
+        part_of_method("volume map", of_method.volume_map, integrator, "for light in media"),
+        part_of_method("global map", of_method.global_map, integrator, "for all indirect light"),
+        part_of_method("irradiance cache", of_method.irradiance_cache, integrator, "for indirect light on diffuse surfaces"),
         part("environment", census.environment, census.environment ? "a constant environment" : "no environment"),
         part("environment map", census.environment_map, census.environment_map ? "an envmap" : "no envmap"),
         part("tangent frames", census.anisotropic_materials || census.normal_maps,

@@ -29,7 +29,10 @@ class IrradianceCacheIntegrator final : public Integrator {
  public:
   const char* name() const override { return "irradiance-cache"; }
   Bias bias() const override { return paths_ ? Bias::kNone : Bias::kFalling; }
-  Store store() const override { return paths_ ? Store::kNone : Store::kIrradianceCache; }
+  MethodParts parts() const override {
+    const bool caustics = projection_.has_value();
+    return {.caustic_map = caustics, .projection_map = caustics, .irradiance_cache = !paths_};
+  }
   bool finds_caustics() const override { return projection_.has_value(); }
   // Throws SettingError if the scene has what the method does not model.
   void prepare(const Scene& scene) override;

@@ -25,7 +25,10 @@ class PhotonIntegrator final : public Integrator {
  public:
   const char* name() const override { return "photon"; }
   Bias bias() const override { return Bias::kFixed; }
-  Store store() const override { return Store::kPhotonMaps; }
+  MethodParts parts() const override {
+    const bool caustics = !projection_->empty();
+    return {.caustic_map = caustics, .global_map = true, .projection_map = caustics};
+  }
   bool finds_caustics() const override { return true; }
   // Throws SettingError if the scene has nothing to shoot or to shoot at.
   void prepare(const Scene& scene) override;

@@ -37,6 +37,11 @@ void PhotonProgressiveIntegrator::prepare(const Scene& scene) {
   if (projection_->empty()) paths_ = make_integrator("path", scene);
 }
 
+MethodParts PhotonProgressiveIntegrator::parts() const {
+  if (paths_) return {};
+  return {.caustic_map = true, .volume_map = scene_->census().media > 0, .projection_map = projection_.has_value()};
+}
+
 std::shared_ptr<const PreparedPass> PhotonProgressiveIntegrator::prepare_pass(std::uint64_t seed, SampleRange samples, int threads,
                                                                               const std::atomic<bool>& cancelled) const {
   if (paths_) return nullptr;

@@ -23,7 +23,7 @@ class PhotonProgressiveIntegrator final : public Integrator {
  public:
   const char* name() const override { return "photon-progressive"; }
   Bias bias() const override { return paths_ ? Bias::kNone : Bias::kFalling; }
-  Store store() const override { return paths_ ? Store::kNone : Store::kPhotonMaps; }
+  MethodParts parts() const override;
   bool finds_caustics() const override { return true; }
   // Throws SettingError if the scene has nothing to shoot or to shoot at.
   void prepare(const Scene& scene) override;
