@@ -6,8 +6,9 @@
 namespace fluxfarm {
 
 void add_method_option(CLI::App& command, std::string& integrator) {
-  command.add_option("--integrator", integrator,
-                     "Method: auto, path, photon, photon-progressive or irradiance-cache; default: as the scene says, of glTF auto");
+  command.add_option(
+      "--integrator", integrator,
+      "Method: auto, path, photon, photon-progressive or irradiance-cache; default: as the scene says, of glTF auto");
 }
 
 std::string method_for(const std::string& integrator, const std::filesystem::path& scene) {

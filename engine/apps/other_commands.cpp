@@ -69,11 +69,11 @@ void print_plan(const PlanOptions& options) {
                         options.seed,
                         settled(options.goal, description.samples_per_pixel)};
   const std::atomic<bool> never{false};
-  const Method method = make_method(method_for(options.integrator, options.scene.scene), scene, picture, resolve_threads(options.threads), never);
+  const Method method =
+      make_method(method_for(options.integrator, options.scene.scene), scene, picture, resolve_threads(options.threads), never);
   const nlohmann::json plan =
       nlohmann::json::parse(plan_json(scene, *method.integrator, method.choice ? &*method.choice : nullptr));
-  const bool json = options.json;
-  if (json) {
+  if (options.json) {
     std::printf("%s\n", plan.dump(2).c_str());
     return;
   }

@@ -85,7 +85,8 @@ void render(const RenderOptions& options) {
   FrameSettings settings{
       {film.crop_x, film.crop_y, film.crop_width, film.crop_height}, options.tile, threads, options.seed, options.goal};
   settings.goal = settled(settings.goal, description.samples_per_pixel);
-  const Method method = make_method(method_for(options.integrator, options.scene.scene), scene, {settings.crop, settings.seed, settings.goal}, threads, interrupted);
+  const Method method = make_method(method_for(options.integrator, options.scene.scene), scene,
+                                    {settings.crop, settings.seed, settings.goal}, threads, interrupted);
   const double prepare = watch.lap();
   if (method.choice) std::fprintf(stderr, "integrator: %s (%s)\n", method.choice->method.c_str(), method.choice->reason.c_str());
   const Integrator& integrator = *method.integrator;

@@ -34,7 +34,8 @@ std::array<int, N> parse_integers(const std::string& text, char separator, const
 }  // namespace
 
 void SceneOptions::add_to(CLI::App& command, bool with_crop) {
-  command.add_option("SCENE", scene, "Scene file: Mitsuba 3 XML (.xml) or its JSON form (.json)")->required();
+  command.add_option("SCENE", scene, "Scene file: Mitsuba 3 XML (.xml), its JSON form (.json) or glTF 2.0 (.glb, .gltf)")
+      ->required();
   command.add_option("--size", size, "Film size WxH in pixels; default: as the scene says");
   if (with_crop) command.add_option("--crop", crop, "Part of the frame x,y,w,h in pixels");
   command.add_option("-D", defines, "Value of a <default> of the scene: name=value");

@@ -131,14 +131,14 @@ def is_path(auto: Outcome) -> bool:
 def compare(name: str, goal: float, options: argparse.Namespace, truth: Halves, folder: Path) -> dict[str, Any]:
     outcomes: dict[str, Outcome] = {}
     for method in ("auto", *METHODS):
-        if method == "photon-progressive" and is_path(outcomes["auto"]):
+        if method == "photon-progressive" and "auto" in outcomes and is_path(outcomes["auto"]):
             continue
         outcome = measure(name, method, goal, options.seeds, options.most_seconds, truth, folder)
         if isinstance(outcome, str):
             print(f"  {name}: {method} left out: {outcome}")
         else:
             outcomes[method] = outcome
-    auto = outcomes["auto"]
+    auto = outcomes.get("auto") or sys.exit(f"{name}: auto did not render it")
     singles = {method: outcome for method, outcome in outcomes.items() if method != "auto"}
     best = min(singles, key=lambda method: singles[method].seconds)
     worst = max(singles, key=lambda method: singles[method].seconds)

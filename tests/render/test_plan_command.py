@@ -52,7 +52,7 @@ def test_plan_foretells_each_method_or_says_why_it_was_left_out() -> None:
 def test_words_are_those_of_the_engine() -> None:
     scene, goal = ROOT / "scenes" / "cornell" / "scene.xml", ("--spp", "64")
     told = plan("cornell", *AUTO, *goal).stdout
-    assert "integrator: irradiance-cache\nchosen for: least squared error times work: path would take " in told
+    assert "integrator: irradiance-cache\nchosen for: least squared error times work: path has " in told
     assert "photon-progressive     left out: no light reaches a surface by mirrors, glass or gloss" in told
     alone = subprocess.run([ENGINE, "plan", scene, *AUTO, *goal], capture_output=True, text=True, check=True).stdout
     without_clock = [line for line in told.splitlines() if " in about " not in line]

@@ -93,6 +93,8 @@ class FakeEngine:
         if "fail" in told:
             kind, _, message = told["fail"].partition(" ")
             return self.fail(request_id, pb.FailureKind.Value("FAILURE_KIND_" + kind), message)
+        if load.integrator == "auto" and not load.HasField("picture"):
+            return self.fail(request_id, pb.FAILURE_KIND_INTERNAL, "auto without a picture")
         self.wait(request_id, float(told.get("load_seconds", 0)))
         self.scenes[load.scene_key] = told
         width, height = (int(side) for side in told.get("size", "64 64").split())
@@ -102,7 +104,7 @@ class FakeEngine:
             height=height,
             scene_spp=int(told.get("spp", 0)),
             crop=pb.PixelRect(width=width, height=height),
-            integrator=load.integrator or "path",
+            integrator="path" if load.integrator in ("", "auto") else load.integrator,
             warnings=[told["warn"]] if "warn" in told else [],
             plan_json='{"integrator": "path", "parts": {}}',
         )

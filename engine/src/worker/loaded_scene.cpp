@@ -24,6 +24,7 @@ Picture settled(const LoadSceneRequest::Picture& asked, const SceneLoadedReply& 
 }  // namespace
 
 std::shared_ptr<const LoadedScene> load_scene(const LoadSceneRequest& request, int threads, const std::atomic<bool>& cancelled) {
+  if (cancelled.load(std::memory_order_relaxed)) throw CancelledError();
   const auto start = std::chrono::steady_clock::now();
   SceneDescription description = read_scene(request.folder, request.entry, {});
   FilmDescription& film = description.film;
@@ -31,18 +32,19 @@ std::shared_ptr<const LoadedScene> load_scene(const LoadSceneRequest& request, i
     // Another size makes another frame: the file's crop has no meaning in it.
     film = {request.width, request.height, 0, 0, 0, 0, film.filter};
   }
-  auto loaded = std::make_shared<LoadedScene>(LoadedScene{{}, Scene(description, threads), {}});
+  auto loaded = std::make_shared<LoadedScene>(LoadedScene{{}, Scene(description, threads), nullptr});
   const PixelRect full{0, 0, film.width, film.height};
   SceneLoadedReply& info = loaded->info;
   info.width = film.width;
   info.height = film.height;
   info.scene_spp = description.samples_per_pixel;
   info.crop = film.crop_width > 0 ? PixelRect{film.crop_x, film.crop_y, film.crop_width, film.crop_height} : full;
-  Method& method = loaded->method;
-  method = make_method(request.integrator, loaded->scene, settled(request.picture, info), threads, cancelled);
+  Method method = make_method(request.integrator, loaded->scene, settled(request.picture, info), threads, cancelled);
   info.integrator = method.integrator->name();
   info.warnings = loaded->scene.warnings();
   info.plan_json = plan_json(loaded->scene, *method.integrator, method.choice ? &*method.choice : nullptr);
+  loaded->integrator = std::move(method.integrator);
+  loaded->pilot->keep(std::move(method.known));
   info.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return loaded;
 }

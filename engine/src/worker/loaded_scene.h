@@ -33,14 +33,32 @@ class AuditMemory {
   std::optional<Made> made_;
 };
 
+// Keeps what a pilot made until the job has gone past it: photon maps and sums may be as large as the scene. Safe to use from many
+// threads.
+class PilotMemory {
+ public:
+  void keep(PilotSamples samples) { samples_ = std::make_shared<const PilotSamples>(std::move(samples)); }
+  // Null once samples were asked for that it does not have.
+  std::shared_ptr<const PilotSamples> find(SampleRange samples) {
+    const std::lock_guard lock(mutex_);
+    if (samples_ && !samples_->may_have(samples)) samples_.reset();
+    return samples_;
+  }
+
+ private:
+  std::mutex mutex_;
+  std::shared_ptr<const PilotSamples> samples_;
+};
+
 struct LoadedScene {
   SceneLoadedReply info;
   Scene scene;
-  Method method;
+  std::unique_ptr<Integrator> integrator;
   std::unique_ptr<AuditMemory> audits = std::make_unique<AuditMemory>();
+  std::unique_ptr<PilotMemory> pilot = std::make_unique<PilotMemory>();
 };
 
-// Reads, compiles and prepares. Throws SceneError, SettingError or ResourceError; CancelledError when a pilot is cancelled.
+// Reads, compiles and prepares. Throws SceneError, SettingError or ResourceError; CancelledError when it is cancelled.
 std::shared_ptr<const LoadedScene> load_scene(const LoadSceneRequest& request, int threads, const std::atomic<bool>& cancelled);
 
 // A scene that is there or on its way; get() waits for it and throws what loading it threw.

@@ -18,8 +18,6 @@ namespace {
 // samples (engine/docs/decisions/0012): photons 1.3 to 1.9, caches 1.2 to 1.7, with photons 1.7 to 2.5.
 constexpr double kRayWithPhotons = 1.6, kRayWithCache = 1.5, kRayWithBoth = 2.3;
 
-// Samples of a trial: one in each replicate, the fewest that tell of noise.
-constexpr std::uint32_t kTrialSamples = 8;
 // What is left of noise after the first round: more than half is gone, as few samples let it look larger than it is. Path tracing
 // on seven of our scenes: 0.22 to 0.5.
 constexpr double kLeftAfterFirstRound = 0.37;
@@ -28,14 +26,11 @@ constexpr double kLeftAfterFirstRound = 0.37;
 // it may leave, at best.
 constexpr double kHopedAhead = 12, kHopedLeft = 0.05;
 
+// Each pixel of the frame takes a hundred bytes while a cache is made.
+constexpr std::int64_t kMostPixelsOfACache = 1 << 24;
+
 // A path that finds a caustic brings back about so much of the lamp's radiance: a diffuse surface and some glass are in between.
 constexpr double kLeftOfLamp = 0.5;
-
-double sum(const std::vector<double>& values) {
-  double all = 0;
-  for (const double value : values) all += value;
-  return all;
-}
 
 std::string percent(double share) { return std::to_string(std::lround(100 * share)) + " %"; }
 
@@ -45,15 +40,13 @@ double work_of_ray(const Integrator& integrator) {
   return parts.caustic_map ? kRayWithPhotons : 1;
 }
 
-// Of the brightest lamp, mean over R, G, B.
+// Of the brightest lamp, mean over R, G, B. Light from outside the scene is left out.
 double brightest_radiance(const Scene& scene) {
-  double brightest = 0;
+  float brightest = 0;
   for (const Emitter* emitter : scene.emitter_list()) {
-    const Rgb power = emitter->power();
-    const auto area = static_cast<double>(emitter->area());
-    if (area > 0) brightest = std::max(brightest, static_cast<double>((power.r + power.g + power.b) / (3 * kPi)) / area);
+    if (const auto* area = dynamic_cast<const AreaEmitter*>(emitter)) brightest = std::max(brightest, mean(area->radiance()));
   }
-  return brightest;
+  return static_cast<double>(brightest);
 }
 
 bool has_unreachable_light(const Scene& scene) {
@@ -90,26 +83,36 @@ class PilotRun {
 
   void run(Contender& path, Contender& photons, Contender& cache) const {
     try_out(path);
-    if (photons.integrator) {
-      try_out(photons);
-      path.figures->unmet_noise = unmet_caustic(path, photons);
+    if (photons.integrator && fits(photons)) path.figures->unmet_noise = unmet_caustic(path, photons);
+    const Contender& last = photons.figures ? photons : path;
+    if (cache.integrator && scene_pixels() > kMostPixelsOfACache) {
+      cache.reason = "the frame has more than " + std::to_string(kMostPixelsOfACache) + " pixels";
+    } else if (cache.integrator && !(may_gain(path) && may_gain(last))) {
+      cache.reason = "indirect light makes " + percent(last.indirect) + " of the noise: not enough for the making of a cache";
+    } else if (cache.integrator && fits(cache)) {
+      cache.figures->in_levels = true;
     }
-    if (cache.integrator) {
-      const Contender& last = photons.integrator ? photons : path;
-      if (may_gain(path) && may_gain(last)) {
-        try_out(cache);
-        cache.figures->in_levels = true;
-      } else {
-        cache.reason = "indirect light makes " + percent(last.indirect) + " of the noise: not enough for the making of a cache";
-      }
-    }
-    if (photons.integrator && has_unreachable_light(task_.scene)) {
+    if (photons.figures && has_unreachable_light(task_.scene)) {
       path.figures.reset();
       path.reason = "no path finds the light of point lamps and suns in mirrors and through smooth glass";
     }
   }
 
  private:
+  std::int64_t scene_pixels() const { return static_cast<std::int64_t>(task_.scene.film().width) * task_.scene.film().height; }
+
+  // Tries it out, unless it takes more memory than a method may.
+  bool fits(Contender& contender) const {
+    try {
+      try_out(contender);
+      return true;
+    } catch (const ResourceError& error) {
+      contender.trial.reset();
+      contender.reason = error.what();
+      return false;
+    }
+  }
+
   void try_out(Contender& contender) const {
     PilotTrial& trial = contender.trial.emplace(task_, *contender.integrator);
     trial.advance(kTrialSamples / 2);
@@ -118,7 +121,7 @@ class PilotRun {
     contender.indirect = indirect_share(half, trial.films());
     const double ray = work_of_ray(*contender.integrator);
     MethodTrial& figures = contender.figures.emplace(MethodTrial{contender.method, trial.noise(), 0, trial.bias(), 0, 0, false, 0});
-    for (double& noise : figures.noise) noise *= kLeftAfterFirstRound;
+    for (TileNoise& tile : figures.noise) tile.share *= kLeftAfterFirstRound;
     figures.work_per_sample = ray * trial.rays_per_sample();
     // Photons are shot for each sample anew, a cache is made once.
     figures.work_ahead = contender.integrator->parts().irradiance_cache ? ray * trial.rays_ahead() : 0;
@@ -129,15 +132,14 @@ class PilotRun {
   double unmet_caustic(const Contender& path, const Contender& photons) const {
     const double brightness = kLeftOfLamp * brightest_radiance(task_.scene);
     const double all = photons.trial->caustic_noise(brightness) * kTrialSamples / kFirstRound;
-    const auto tiles = static_cast<double>(task_.tiles.size());
-    const double met = std::max(sum(path.figures->noise) - sum(photons.figures->noise), 0.0) / tiles;
+    const double met = std::max(mean_noise(*path.figures) - mean_noise(*photons.figures), 0.0);
     return std::max(all - met, 0.0);
   }
 
   // Whether a cache that takes little and works well would cost less than that method.
   bool may_gain(const Contender& than) const {
     MethodTrial hoped = *than.figures;
-    for (double& noise : hoped.noise) noise *= 1 - (1 - kHopedLeft) * than.indirect;
+    for (TileNoise& tile : hoped.noise) tile.share *= 1 - (1 - kHopedLeft) * than.indirect;
     hoped.unmet_noise = 0;
     hoped.in_levels = true;
     hoped.work_ahead = kHopedAhead * hoped.work_per_sample;
@@ -171,11 +173,13 @@ Method run_pilot(const Scene& scene, const Picture& picture, int threads, const 
   Method method;
   Contender& chosen = *std::ranges::find(contenders, choice.method, &Contender::method);
   method.integrator = std::move(chosen.integrator);
-  if (chosen.trial) method.known = chosen.trial->take_samples();
+  // Tiles of other goals are cut otherwise.
+  if (chosen.trial) method.known = chosen.trial->take_samples(picture.goal.rel_error.has_value());
   choice.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   const MethodCandidate& taken = *std::ranges::find(choice.candidates, choice.method, &MethodCandidate::method);
-  // The pilot's samples by the chosen method are a part of both.
-  if (chosen.trial) choice.expected_seconds = choice.seconds + std::max(taken.forecast->seconds - chosen.trial->seconds(), 0.0);
+  // Towards an error goal the pilot's samples by the chosen method are a part of both.
+  const double in_both = chosen.trial && picture.goal.rel_error ? chosen.trial->seconds() : 0;
+  if (taken.forecast) choice.expected_seconds = choice.seconds + std::max(taken.forecast->seconds - in_both, 0.0);
   method.choice = std::move(choice);
   return method;
 }

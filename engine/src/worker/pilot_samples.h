@@ -1,5 +1,5 @@
-// What a pilot has prepared and rendered by the method that was chosen: the first passes of the picture, so that none is made
-// twice.
+// What a pilot has prepared and rendered by the method that was chosen: the first passes of the picture, so that none is prepared
+// twice, and those of its tiles that are cut as the picture's.
 #pragma once
 
 #include <algorithm>
@@ -20,6 +20,7 @@ class PilotSamples {
 
   void keep(SampleRange samples, std::shared_ptr<const PreparedPass> pass) { passes_.emplace_back(samples, std::move(pass)); }
   void keep(TileSums tile) { tiles_.push_back(std::move(tile)); }
+  void drop_tiles() { tiles_.clear(); }
 
   // What the method prepared for these samples, null if it needs nothing; empty: the pilot has not prepared them.
   std::optional<std::shared_ptr<const PreparedPass>> pass(std::uint64_t seed, SampleRange samples) const {
@@ -27,6 +28,8 @@ class PilotSamples {
     if (seed != seed_ || found == passes_.end()) return std::nullopt;
     return found->second;
   }
+  // Whether it may have some of these samples.
+  bool may_have(SampleRange samples) const { return !passes_.empty() && samples.begin < passes_.back().first.end; }
   // Null: not rendered.
   const TileSums* tile(std::uint64_t seed, SampleRange samples, PixelRect rect) const {
     const auto found = std::ranges::find_if(tiles_, [&](const TileSums& t) { return t.samples == samples && t.rect == rect; });

@@ -17,15 +17,13 @@ namespace {
 
 constexpr std::size_t kOneTileOf = 10, kFewestTiles = 6, kMostTiles = 64;
 
-// Adds up `value(film, x, y)` over all pixels of the films.
+// Adds up `value(x, y)` over all pixels of the film.
 template <typename Value>
-double sum_over(const std::vector<Film>& films, Value value) {
+double sum_over(const Film& film, Value value) {
   double sum = 0;
-  for (const Film& film : films) {
-    const PixelRect rect = film.crop();
-    for (int y = rect.y; y < rect.y + rect.height; ++y) {
-      for (int x = rect.x; x < rect.x + rect.width; ++x) sum += value(film, x, y);
-    }
+  const PixelRect rect = film.crop();
+  for (int y = rect.y; y < rect.y + rect.height; ++y) {
+    for (int x = rect.x; x < rect.x + rect.width; ++x) sum += value(x, y);
   }
   return sum;
 }
@@ -97,29 +95,33 @@ void PilotTrial::advance(std::uint32_t samples) {
   seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-std::vector<double> PilotTrial::noise() const {
-  std::vector<double> shares;
+std::vector<TileNoise> PilotTrial::noise() const {
+  std::vector<TileNoise> tiles;
   for (const Film& film : films_) {
     const ErrorShares errors(film, film.crop());
-    const double sum = sum_over({film}, [&](const Film&, int x, int y) { return errors.at(x, y); });
-    shares.push_back(sum / film.crop().pixels());
+    const double sum = sum_over(film, [&](int x, int y) { return errors.at(x, y); });
+    tiles.push_back({sum / film.crop().pixels(), film.crop().pixels()});
   }
-  return shares;
+  return tiles;
 }
 
 double PilotTrial::bias() const {
   if (integrator_.bias() == Integrator::Bias::kNone) return 0;
-  const double sum = sum_over(films_, [](const Film& film, int x, int y) { return film.bias_share(x, y); });
+  double sum = 0;
+  for (const Film& film : films_) sum += sum_over(film, [&](int x, int y) { return film.bias_share(x, y); });
   return std::max(sum / task_.tried_pixels(), 0.0);
 }
 
 double PilotTrial::caustic_noise(double brightness) const {
   if (!task_.scene.census().delta_lobes) return 0;
-  const double sum = sum_over(films_, [&](const Film& film, int x, int y) {
-    const Rgb caustic = film.layer_mean(x, y, LightLayer::kCaustic);
-    const auto square = [&](float light) { return std::max(static_cast<double>(light), 0.0) * brightness / done_; };
-    return relative({square(caustic.r), square(caustic.g), square(caustic.b)}, film.estimate(x, y).mean);
-  });
+  double sum = 0;
+  for (const Film& film : films_) {
+    sum += sum_over(film, [&](int x, int y) {
+      const Rgb caustic = film.layer_mean(x, y, LightLayer::kCaustic);
+      const auto square = [&](float light) { return std::max(static_cast<double>(light), 0.0) * brightness / done_; };
+      return relative({square(caustic.r), square(caustic.g), square(caustic.b)}, film.estimate(x, y).mean);
+    });
+  }
   return sum / task_.tried_pixels();
 }
 
@@ -129,18 +131,17 @@ double PilotTrial::rays_per_sample() const {
 }
 
 double indirect_share(const std::vector<Film>& half, const std::vector<Film>& all) {
+  const auto square = [](float difference) { return static_cast<double>(difference) * static_cast<double>(difference); };
   double indirect = 0, whole = 0;
   for (std::size_t i = 0; i < all.size(); ++i) {
-    const PixelRect rect = all[i].crop();
-    for (int y = rect.y; y < rect.y + rect.height; ++y) {
-      for (int x = rect.x; x < rect.x + rect.width; ++x) {
-        const Lanes mean = all[i].estimate(x, y).mean, first = half[i].estimate(x, y).mean;
-        const Rgb layer = all[i].layer_mean(x, y, LightLayer::kIndirect) - half[i].layer_mean(x, y, LightLayer::kIndirect);
-        const auto square = [](float difference) { return static_cast<double>(difference) * static_cast<double>(difference); };
-        indirect += relative({square(layer.r), square(layer.g), square(layer.b)}, mean);
-        whole += relative({square(mean[0] - first[0]), square(mean[1] - first[1]), square(mean[2] - first[2])}, mean);
-      }
-    }
+    indirect += sum_over(all[i], [&](int x, int y) {
+      const Rgb layer = all[i].layer_mean(x, y, LightLayer::kIndirect) - half[i].layer_mean(x, y, LightLayer::kIndirect);
+      return relative({square(layer.r), square(layer.g), square(layer.b)}, all[i].estimate(x, y).mean);
+    });
+    whole += sum_over(all[i], [&](int x, int y) {
+      const Lanes mean = all[i].estimate(x, y).mean, first = half[i].estimate(x, y).mean;
+      return relative({square(mean[0] - first[0]), square(mean[1] - first[1]), square(mean[2] - first[2])}, mean);
+    });
   }
   return whole > 0 ? std::min(indirect / whole, 1.0) : 0;
 }

@@ -8,6 +8,7 @@
 #include "film/film.h"
 #include "film/pixel_rect.h"
 #include "integrators/integrator.h"
+#include "integrators/plan/method_trial.h"
 #include "worker/pilot_samples.h"
 
 namespace fluxfarm {
@@ -35,10 +36,10 @@ class PilotTrial {
   void advance(std::uint32_t samples);
 
   // Share of relMSE by noise, of each tile; from two samples on.
-  std::vector<double> noise() const;
-  // By the method's bias, mean over the tiles.
+  std::vector<TileNoise> noise() const;
+  // By the method's bias, mean over the pixels that were tried.
   double bias() const;
-  // Share of relMSE, mean over the tiles, of as many samples of which few bring back `brightness` and all others nothing, so that
+  // Share of relMSE, mean over the same, of as many samples of which few bring back `brightness` and all others nothing, so that
   // the mean is the caustic layer.
   double caustic_noise(double brightness) const;
 
@@ -47,7 +48,11 @@ class PilotTrial {
   double rays() const { return static_cast<double>(rays_ahead_ + rays_of_passes_ + rays_of_tiles_); }
   double seconds() const { return seconds_; }
   const std::vector<Film>& films() const { return films_; }  // one for each tile
-  PilotSamples take_samples() { return std::move(kept_); }
+  // What it prepared and, with `tiles`, rendered.
+  PilotSamples take_samples(bool tiles) {
+    if (!tiles) kept_.drop_tiles();
+    return std::move(kept_);
+  }
 
  private:
   const PilotTask& task_;

@@ -120,7 +120,7 @@ class Worker {
       try {
         return scene.get()->info;
       } catch (...) {
-        scenes_.forget(key);  // asked for again, it is tried again
+        if (loading) scenes_.forget(key);  // asked for again, it is tried again
         throw;
       }
     });
@@ -132,28 +132,29 @@ class Worker {
       if (!scene.valid()) return reply_not_loaded(id, request.decision->key);
     }
     start(id, [this, scene, request = std::move(request)](const std::atomic<bool>& cancelled) -> ReplyBody {
+      if (cancelled) throw CancelledError();
       if (!scene.valid()) return merger_.merge(request);
       const LoadedScene& loaded = *scene.get();
       const LightAudit audit =
-          loaded.audits->find(loaded.scene, *loaded.method.integrator, request.crop, request.info.seed, threads_, cancelled);
-      return merger_.merge(request, &audit, loaded.method.integrator->bias() != Integrator::Bias::kFixed);
+          loaded.audits->find(loaded.scene, *loaded.integrator, request.crop, request.info.seed, threads_, cancelled);
+      return merger_.merge(request, &audit, loaded.integrator->bias() != Integrator::Bias::kFixed);
     });
   }
   void handle(std::uint64_t id, WriteTileRequest request) {
-    start(id, [request = std::move(request)](const std::atomic<bool>&) -> ReplyBody {
+    start(id, [request = std::move(request)](const std::atomic<bool>& cancelled) -> ReplyBody {
+      if (cancelled) throw CancelledError();
       write_tile(request);
       return TileWrittenReply{};
     });
   }
 
-  // One job that answers with one reply. `work` hears whether it is cancelled.
+  // One job that answers with one reply. `work` hears whether it is cancelled, maybe before it began: others may wait for its end.
   void start(std::uint64_t id, std::function<ReplyBody(const std::atomic<bool>&)> work) {
     const std::shared_ptr<Running> running = begin(id);
     jobs_.push(
         [this, id, running, work = std::move(work)] {
           ReplyBody body;
           try {
-            if (running->cancelled) throw CancelledError();
             body = work(running->cancelled);
           } catch (...) {
             body = failure_of(std::current_exception());
@@ -212,17 +213,20 @@ class Worker {
   // From the pilot, where it has them.
   TileSums sums_of(const LoadedScene& loaded, const RenderTilesRequest& request, std::uint32_t tile, RayQueries& queries,
                    const std::atomic<bool>& cancelled, const std::function<void(std::uint64_t)>& progress) {
-    const auto& [integrator, choice, known] = loaded.method;
-    if (const TileSums* sums = known.tile(request.seed, request.samples, request.tiles[tile])) return *sums;
-    std::optional<std::shared_ptr<const PreparedPass>> pass = known.pass(request.seed, request.samples);
-    if (!pass) pass = passes_.find(request.key, *integrator, request.seed, request.samples, threads_, cancelled);
+    std::optional<std::shared_ptr<const PreparedPass>> pass;
+    if (const std::shared_ptr<const PilotSamples> known = loaded.pilot->find(request.samples)) {
+      if (const TileSums* sums = known->tile(request.seed, request.samples, request.tiles[tile])) return *sums;
+      pass = known->pass(request.seed, request.samples);
+    }
+    if (!pass) pass = passes_.find(request.key, *loaded.integrator, request.seed, request.samples, threads_, cancelled);
     const TileTask task{request.tiles[tile], request.samples, request.seed, pass->get()};
-    return render_tile(loaded.scene, *integrator, task, queries, cancelled, progress);
+    return render_tile(loaded.scene, *loaded.integrator, task, queries, cancelled, progress);
   }
 
   // The first failure ends the other tiles of the request, and answers it when they have ended: until then they may write files.
   static void note_failure(Running& running, const FailureReply& failure) {
-    if (failure.kind == FailureKind::kCancelled) return;
+    // A scene may be cancelled by the request that loads it, and this one, which waits for it, may not be.
+    if (failure.kind == FailureKind::kCancelled && running.cancelled) return;
     const std::lock_guard lock(running.failure_mutex);
     if (!running.failure) running.failure = failure;
     running.cancelled = true;

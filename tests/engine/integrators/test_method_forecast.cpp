@@ -9,8 +9,10 @@
 namespace fluxfarm {
 namespace {
 
+constexpr int kPixels = 1024;  // of a tile
+
 MethodTrial trial(double noise, double work_per_sample) {
-  return {"a method", {noise, noise, noise, noise}, 0, 0, work_per_sample, 0, false, 1e-6};
+  return {"a method", {{noise, kPixels}, {noise, kPixels}}, 0, 0, work_per_sample, 0, false, 1e-6};
 }
 
 TEST(MethodForecast, FourTimesTheSamplesHalveTheErrorOrALittleMore) {
@@ -34,7 +36,7 @@ TEST(MethodForecast, AnErrorGoalTakesTheFirstRoundAtLeastAndMoreForLess) {
 
 TEST(MethodForecast, NoiseInOneTileTakesFewerSamplesThanTheSameNoiseInAll) {
   MethodTrial uneven = trial(0, 1000);
-  uneven.noise = {0.16, 0, 0, 0};
+  uneven.noise = {{0.16, kPixels}, {0, 3 * kPixels}};
   const Goal goal{{}, {}, 0.05};
   EXPECT_LT(forecast(uneven, goal).samples, 0.5 * forecast(trial(0.04, 1000), goal).samples);
 }
@@ -52,10 +54,27 @@ TEST(MethodForecast, EachLevelOfACacheCostsMoreAndLeavesLessBias) {
   EXPECT_LT(second.error, 0.7 * first.error);
 }
 
-TEST(MethodForecast, AGoalInSecondsEndsInTime) {
-  const MethodForecast reached = forecast(trial(0.04, 1000), {{}, 0.5, {}});
-  EXPECT_LE(reached.seconds, 0.5);
-  EXPECT_GT(reached.seconds, 0.4);
+TEST(MethodForecast, ASliverOfATileWeighsAsMuchAsItsPixels) {
+  MethodTrial slivers = trial(0.04, 1000);
+  slivers.noise.push_back({40, 1});
+  EXPECT_NEAR(mean_noise(slivers), 0.04 + 40.0 / 2049, 1e-3);
+}
+
+TEST(MethodForecast, BlurOfPhotonsFalls) {
+  MethodTrial photons = trial(0, 1);
+  photons.bias = 0.01;
+  EXPECT_NEAR(forecast_samples(photons, 64 * kTrialSamples).error, 0.1 / 4, 1e-6);
+}
+
+TEST(MethodForecast, AGoalInSecondsIsOneInRaysSoThatNoClockDecides) {
+  const Goal goal{{}, 0.5, {}};
+  MethodTrial slow = trial(0.04, 1000);
+  const double samples = forecast(slow, goal).samples;
+  EXPECT_GT(samples, 100);
+  slow.seconds_per_work = 1;
+  EXPECT_EQ(forecast(slow, goal).samples, samples);
+  slow.work_per_sample = 2000;
+  EXPECT_NEAR(forecast(slow, goal).samples, samples / 2, 0.1 * samples);
 }
 
 MethodChoice choose(const Goal& goal, const MethodTrial& a, const MethodTrial& b) {
@@ -70,7 +89,7 @@ TEST(MethodChoice, TakesWhatNeedsTheLeastWorkForTheGoal) {
   const MethodTrial quick = trial(0.04, 1000), good = trial(0.01, 2000);
   const MethodChoice fine = choose({{}, {}, 0.01}, quick, good);
   EXPECT_EQ(fine.method, "b");
-  EXPECT_NE(fine.reason.find("least work until a relative error of 0.01: a would take 1."), std::string::npos) << fine.reason;
+  EXPECT_NE(fine.reason.find("least work until a relative error of 0.01: a has 1."), std::string::npos) << fine.reason;
   EXPECT_EQ(choose({{}, {}, 0.2}, quick, good).method, "a");  // both are done after the first round
   EXPECT_EQ(choose({256, {}, {}}, quick, good).method, "b");
   EXPECT_EQ(choose({{}, 1.0, {}}, quick, good).method, "b");
@@ -81,6 +100,19 @@ TEST(MethodChoice, LightThatATrialDidNotMeetCounts) {
   EXPECT_EQ(choose({{}, {}, 0.05}, blind, trial(0.04, 1000)).method, "a");
   blind.unmet_noise = 1;
   EXPECT_EQ(choose({{}, {}, 0.05}, blind, trial(0.04, 1000)).method, "b");
+}
+
+TEST(MethodChoice, AGoalOutOfReachIsNotTheCheapestOne) {
+  MethodTrial never = trial(0.04, 1);
+  never.unmet_noise = 1e9;
+  const MethodTrial slow = trial(0.04, 1e6);
+  EXPECT_LT(forecast(never, {{}, {}, 0.01}).work, forecast(slow, {{}, {}, 0.01}).work);
+  EXPECT_EQ(choose({{}, {}, 0.01}, never, slow).method, "b");
+}
+
+TEST(MethodChoice, SaysSoWhereNothingHasNoise) {
+  const MethodChoice black = choose({64, {}, {}}, trial(0, 1), trial(0, 2));
+  EXPECT_EQ(black.reason, "nothing that was tried has any noise");
 }
 
 TEST(MethodChoice, TakesTheFirstMethodWhereNoneWasTried) {

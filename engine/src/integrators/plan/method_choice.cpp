@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <sstream>
 
+#include "integrators/plan/method_forecast.h"
+
 namespace fluxfarm {
 namespace {
 
@@ -22,8 +24,10 @@ std::string what_for(const Goal& goal) {
 }  // namespace
 
 double cost(const MethodForecast& forecast, const Goal& goal) {
-  if (goal.rel_error) return forecast.work;
   const double rel_mse = forecast.error * forecast.error;
+  if (goal.rel_error) {
+    return reaches(forecast, goal) ? forecast.work : forecast.work * rel_mse / (*goal.rel_error * *goal.rel_error);
+  }
   return goal.seconds ? rel_mse : rel_mse * forecast.work;
 }
 
@@ -45,8 +49,11 @@ void choose_cheapest(MethodChoice& choice) {
   choice.method = best == nullptr ? choice.candidates.front().method : best->method;
   choice.reason = "no other method suits the scene";
   if (second == nullptr) return;
-  const double ratio = cost(*second->forecast, choice.goal) / cost(*best->forecast, choice.goal);
-  choice.reason = what_for(choice.goal) + ": " + second->method + " would take " + with_two_digits(ratio) + " times as much";
+  const double least = cost(*best->forecast, choice.goal);
+  choice.reason = "nothing that was tried has any noise";
+  if (!(least > 0)) return;
+  const double ratio = cost(*second->forecast, choice.goal) / least;
+  choice.reason = what_for(choice.goal) + ": " + second->method + " has " + with_two_digits(ratio) + " times as much";
 }
 
 }  // namespace fluxfarm

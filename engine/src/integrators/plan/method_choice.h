@@ -29,7 +29,8 @@ struct MethodChoice {
   double expected_seconds = 0;  // with those, until the goal
 };
 
-// What a method costs a goal: work until an error goal, else relMSE, times the work where samples are given.
+// What a method costs a goal: work until an error goal, and where that is out of reach so many times more as its relMSE is too
+// large; else relMSE, times the work where samples are given.
 double cost(const MethodForecast& forecast, const Goal& goal);
 
 // Takes the cheapest candidate of those with a forecast, or the first one where none has: sets method and reason.

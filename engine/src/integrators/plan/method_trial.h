@@ -6,19 +6,24 @@
 
 namespace fluxfarm {
 
+// What one tile that was tried has.
+struct TileNoise {
+  double share = 0;  // of relMSE by noise, a mean over its pixels, that kFirstRound samples of each would leave
+  int pixels = 0;
+};
+
 struct MethodTrial {
   std::string method;
-  // Of each tile that was tried the share of relMSE by noise that kFirstRound samples of every pixel leave.
-  std::vector<double> noise;
-  // The same of the whole picture by light that the trial's samples are not likely to have met: a mean over the tiles.
+  std::vector<TileNoise> noise;
+  // The same share by light that the trial's samples are not likely to have met, and after the trial by the method's bias: means
+  // over all pixels that were tried.
   double unmet_noise = 0;
-  // And by the method's bias, which falls as samples are added.
   double bias = 0;
   // Rays, each counted as so many of path tracing as it takes the time of: for one sample of every pixel, and before the first.
   double work_per_sample = 0, work_ahead = 0;
-  // What each further level of a cache takes: the first `work_ahead`, each later one more. False: there are no levels.
+  // Whether there are levels of a cache: the first takes `work_ahead`, each later one more. Else the work is done once.
   bool in_levels = false;
-  // Measured, for forecasts in seconds; no choice depends on it.
+  // Measured, to tell seconds; no choice depends on it.
   double seconds_per_work = 0;
 };
 
