@@ -14,7 +14,7 @@ import subprocess
 from pathlib import Path
 from typing import Any
 
-from fluxfarm.api.chart import Curve, draw
+from fluxfarm.plot import Curve, Panel, draw
 
 ROOT = Path(__file__).parents[2]
 PROGRAM = ROOT / "build" / "release" / "irradiance_ablation"
@@ -71,7 +71,7 @@ def plot(result: dict[str, Any]) -> str:
         points = [(row["records"], interpolation(row, "rms")) for row in rows]
         if colour and points:
             curves.append(Curve(points, method, colour, "5 3" if method.endswith("no gradients") else "none"))
-    return draw(curves, "records", "RMSE by interpolation, over the mean irradiance")
+    return draw([Panel(curves, "records", "RMSE by interpolation, over the mean irradiance")])
 
 
 def report(name: str, result: dict[str, Any]) -> str:

@@ -2,6 +2,7 @@
 
 import re
 import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -68,6 +69,15 @@ def test_compose_file_publishes_the_service_to_this_machine_only() -> None:
     assert re.search(r"^services:\n {2}fluxfarm:\n", compose, re.MULTILINE)
     assert re.findall(r'- "([^"]+:\d+:\d+)"', compose) == ["127.0.0.1:8460:8460"]
     assert "\t" not in compose
+
+
+@pytest.mark.parametrize("file", sorted((ROOT / "tests" / "benchmarks").glob("*.py")), ids=lambda file: file.name)
+def test_benchmark_finds_all_that_it_imports(file: Path) -> None:
+    """They are run by hand and by no test, so that a name that has moved would go unnoticed."""
+    done = subprocess.run(
+        [sys.executable, "-c", f"import {file.stem}"], cwd=file.parent, capture_output=True, text=True
+    )
+    assert done.returncode == 0, done.stderr
 
 
 # Written in pieces, so that this file is not found by its own search.
