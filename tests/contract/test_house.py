@@ -74,9 +74,8 @@ def test_compose_file_publishes_the_service_to_this_machine_only() -> None:
 @pytest.mark.parametrize("file", sorted((ROOT / "tests" / "benchmarks").glob("*.py")), ids=lambda file: file.name)
 def test_benchmark_finds_all_that_it_imports(file: Path) -> None:
     """They are run by hand and by no test, so that a name that has moved would go unnoticed."""
-    done = subprocess.run(
-        [sys.executable, "-c", f"import {file.stem}"], cwd=file.parent, capture_output=True, text=True
-    )
+    command = [sys.executable, "-c", f"import {file.stem}"]
+    done = subprocess.run(command, cwd=file.parent, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
 
 
