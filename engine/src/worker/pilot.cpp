@@ -120,7 +120,7 @@ class PilotRun {
     trial.advance(kTrialSamples);
     contender.indirect = indirect_share(half, trial.films());
     const double ray = work_of_ray(*contender.integrator);
-    MethodTrial& figures = contender.figures.emplace(MethodTrial{contender.method, trial.noise(), 0, trial.bias(), 0, 0, false, 0});
+    MethodTrial& figures = contender.figures.emplace(MethodTrial{trial.noise(), 0, trial.bias(), 0, 0, false, 0});
     for (TileNoise& tile : figures.noise) tile.share *= kLeftAfterFirstRound;
     figures.work_per_sample = ray * trial.rays_per_sample();
     // Photons are shot for each sample anew, a cache is made once.

@@ -12,7 +12,7 @@ namespace {
 constexpr int kPixels = 1024;  // of a tile
 
 MethodTrial trial(double noise, double work_per_sample) {
-  return {"a method", {{noise, kPixels}, {noise, kPixels}}, 0, 0, work_per_sample, 0, false, 1e-6};
+  return {{{noise, kPixels}, {noise, kPixels}}, 0, 0, work_per_sample, 0, false, 1e-6};
 }
 
 TEST(MethodForecast, FourTimesTheSamplesHalveTheErrorOrALittleMore) {

@@ -1,7 +1,6 @@
 // What a few samples of a few tiles tell of a method: the figures by which methods are compared.
 #pragma once
 
-#include <string>
 #include <vector>
 
 namespace fluxfarm {
@@ -13,7 +12,6 @@ struct TileNoise {
 };
 
 struct MethodTrial {
-  std::string method;
   std::vector<TileNoise> noise;
   // The same share by light that the trial's samples are not likely to have met, and after the trial by the method's bias: means
   // over all pixels that were tried.
