@@ -13,7 +13,9 @@ EmissionSample emitted_by(const AreaSample& point, Rgb power, float area, bool b
     if (back) normal = -normal;
   }
   const Vec3f direction = Frame(normal).to_world(square_to_cosine_hemisphere(u_direction));
-  return {{offset_point(point.position, normal), direction}, power, false, {area * dot(normal, direction), 0}};
+  const float cosine = dot(normal, direction);
+  const Rgb intensity = power * (cosine / (both_sides ? kTwoPi : kPi));
+  return {{offset_point(point.position, normal), direction}, power, false, {area * cosine, 0}, false, intensity};
 }
 
 EmissionSample emitted_from_outside(Vec3f direction, Rgb irradiance, float solid_angle, Vec3f scene_center, float scene_radius,
@@ -21,7 +23,7 @@ EmissionSample emitted_from_outside(Vec3f direction, Rgb irradiance, float solid
   const Frame frame(direction);
   const Vec2f p = square_to_uniform_disk(u_point);
   const Vec3f origin = scene_center + scene_radius * (p.x * frame.s + p.y * frame.t - direction);
-  return {{origin, direction}, irradiance * (kPi * scene_radius * scene_radius), false, {0, solid_angle}, true};
+  return {{origin, direction}, irradiance * (kPi * scene_radius * scene_radius), false, {0, solid_angle}, true, irradiance};
 }
 
 std::optional<EmitterSample> AreaEmitter::sample(Vec3f reference, Vec2f u) const {
@@ -51,7 +53,7 @@ std::optional<EmitterSample> PointEmitter::sample(Vec3f reference, Vec2f) const 
 }
 
 std::optional<EmissionSample> PointEmitter::emit(Vec2f, Vec2f u_direction, Vec3f) const {
-  return EmissionSample{{position_, square_to_uniform_sphere(u_direction)}, power(), true, {}};
+  return EmissionSample{{position_, square_to_uniform_sphere(u_direction)}, power(), true, {}, false, intensity_};
 }
 
 std::optional<EmitterBounds> PointEmitter::bounds() const {

@@ -28,7 +28,7 @@ std::optional<EmissionSample> SpotEmitter::emit(Vec2f, Vec2f u_direction, Vec3f)
   const Vec3f direction = Frame(axis_).to_world(square_to_uniform_cap(u_direction, height));
   const float share = falloff(direction);
   if (!(share > 0)) return std::nullopt;
-  return EmissionSample{{position_, direction}, intensity_ * (share * kTwoPi * height), true, {}};
+  return EmissionSample{{position_, direction}, intensity_ * (share * kTwoPi * height), true, {}, false, intensity_ * share};
 }
 
 float SpotEmitter::falloff(Vec3f direction) const {

@@ -18,6 +18,9 @@ struct LightAudit {
     // Share of the picture there that is seen in or through smooth surfaces, where the audit is blind. Zero where nothing is
     // unreachable: nobody asks.
     double blind = 0;
+    // Of light that was scattered sharply (integrators/photon/sharpness.h) the mean square of what one path that may find it
+    // brings back, W^2 m^-4 sr^-2: what such light adds to the variance of path tracing, but for what falls on other surfaces.
+    double sharp_square = 0;
   };
   std::vector<Cell> cells;  // of make_tiles(crop, kErrorTile), in that order
   // Share of the light arriving at surfaces with a continuous lobe, anywhere in the scene, that no path from the camera can find.

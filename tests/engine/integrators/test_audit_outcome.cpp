@@ -55,6 +55,7 @@ TEST(AuditOutcome, IsTheSameForAnyNumberOfThreads) {
     EXPECT_EQ(one.cells[i].variance, three.cells[i].variance);
     EXPECT_EQ(one.cells[i].unreachable, three.cells[i].unreachable);
     EXPECT_EQ(one.cells[i].blind, three.cells[i].blind);
+    EXPECT_EQ(one.cells[i].sharp_square, three.cells[i].sharp_square);
     EXPECT_GT(one.cells[i].unreachable, 0);
     blind += one.cells[i].blind;
   }
@@ -95,7 +96,8 @@ TEST(AuditOutcome, SurvivesEmittersBeyondAllNumbers) {
     builder.emitter(PointEmitterDescription{{0, 0.5f, 0}, Rgb{intensity}});
     const LightAudit audit = audit_light(Scene(wide_view(builder, 50), 1), kFrame, 3, 1, kNever);
     EXPECT_TRUE(std::isfinite(audit.unreachable_share)) << intensity;
-    for (const LightAudit::Cell& cell : audit.cells) EXPECT_TRUE(std::isfinite(cell.radiance + cell.unreachable)) << intensity;
+    for (const LightAudit::Cell& cell : audit.cells)
+      EXPECT_TRUE(std::isfinite(cell.radiance + cell.unreachable + cell.sharp_square)) << intensity;
   }
 }
 

@@ -41,7 +41,7 @@ struct Task {
 
 // Sums over particles, of one cell.
 struct CellSums {
-  double radiance = 0, squares = 0, unreachable = 0;
+  double radiance = 0, squares = 0, unreachable = 0, sharp_squares = 0;
 };
 
 class Grid {
@@ -77,6 +77,7 @@ class GroupSums {
         cells[*cell].unreachable += static_cast<double>(splat.radiance);
         continue;
       }
+      cells[*cell].sharp_squares += splat.sharp_square;
       auto place = std::ranges::find(own_, *cell, &Own::cell);
       if (place == own_.end()) place = own_.insert(place, Own{*cell, 0});
       place->radiance += static_cast<double>(splat.radiance);
@@ -191,6 +192,7 @@ LightAudit audit_light(const Scene& scene, PixelRect crop, std::uint64_t seed, i
       audit.cells[i].radiance += group.cells[i].radiance * scale;
       audit.cells[i].variance += group.cells[i].squares * scale * scale;
       audit.cells[i].unreachable += group.cells[i].unreachable * scale;
+      audit.cells[i].sharp_square += group.cells[i].sharp_squares * scale;
     }
   }
   if (arrived_unreachable > 0) {

@@ -6,6 +6,7 @@
 
 #include "integrators/key_random.h"
 #include "integrators/path/path_vertex.h"
+#include "integrators/photon/sharpness.h"
 #include "integrators/roulette.h"
 
 namespace fluxfarm {
@@ -23,11 +24,52 @@ std::vector<double> shares_of(const Scene& scene) {
 
 }  // namespace
 
+// Light as a path from the camera would bring it back that goes the particle's way and asks for the emitter in the end.
+class FoundLight {
+ public:
+  explicit FoundLight(const EmissionSample& emission)
+      : size_(emission.size), from_outside_(emission.from_outside), radiance_(mean(emission.intensity)) {}
+
+  void travel(float distance) { travelled_ += distance; }
+  // Scattered, with so much of the light left.
+  void scatter(const ScatteredFlux& scatter, float left) {
+    if (scatter.passes) return;
+    if (first_) {
+      // A lobe that is narrower than the emitter looks shows its radiance, a wider one spreads what arrives.
+      const float irradiance = from_outside_ ? radiance_ : radiance_ / (travelled_ * travelled_);
+      const float size = size_.from(travelled_);
+      radiance_ = std::isinf(scatter.value) || scatter.value * size > 1 ? irradiance / size : irradiance * scatter.value;
+      sharp_so_far_ = sharpness(1 / scatter.value + size);
+      if (!std::isfinite(radiance_)) radiance_ = 0;  // no path finds it
+    } else {
+      const float sharp = sharpness(1 / scatter.value);
+      by_photons_ += sharp_so_far_ * (1 - sharp);
+      sharp_so_far_ *= sharp;
+    }
+    radiance_ *= left;
+    first_ = false;
+  }
+
+  // Of the surface that a path comes from; mean over R, G, B, W m^-2 sr^-1.
+  float radiance() const { return first_ ? 0 : radiance_; }
+  // The part of it that photons would carry (photon/sharpness.h).
+  float by_photons() const { return by_photons_ + sharp_so_far_; }
+
+ private:
+  ApparentSize size_;  // of the emitter
+  bool from_outside_;
+  float radiance_;       // before it is scattered, EmissionSample::intensity
+  float travelled_ = 0;  // since emission, m
+  float sharp_so_far_ = 0, by_photons_ = 0;
+  bool first_ = true;  // not scattered so far
+};
+
 struct ParticleTracer::Particle {
   Rgb flux;
   Ray ray;
   bool delta_emitter = false;
   bool unreachable = false;
+  FoundLight found;
   KeyRandom random;
 };
 
@@ -46,7 +88,7 @@ void ParticleTracer::trace(std::uint32_t index, RayQueries& queries, ParticleTra
   const Vec2f u_point = random.next_2d(), u_direction = random.next_2d();
   const auto emission = source_.emit(place, u_point, u_direction);
   if (!emission) return;
-  Particle particle{emission->flux, emission->ray, emission->delta, false, random};
+  Particle particle{emission->flux, emission->ray, emission->delta, false, FoundLight(*emission), random};
   const float begun_with = max_component(particle.flux);
   if (!(begun_with > 0) || !is_finite(particle.flux)) return;
 
@@ -57,6 +99,7 @@ void ParticleTracer::trace(std::uint32_t index, RayQueries& queries, ParticleTra
     queries.intersect({&particle.ray, 1}, {&hit, 1}, false);
     if (hit.shape == Hit::kNone) return;
     const PathVertex vertex(scene_, particle.ray, hit, space);
+    particle.found.travel(hit.t);
     if (vertex.surface->has_continuous_lobe) {
       const auto arriving = static_cast<double>(mean(particle.flux));
       trace.arrived += arriving;
@@ -69,6 +112,7 @@ void ParticleTracer::trace(std::uint32_t index, RayQueries& queries, ParticleTra
     // Of paths next-event estimation alone finds a delta light, and never over a delta lobe.
     if (bounces == 1 && particle.delta_emitter && scatter->delta && !finds_caustics_) particle.unreachable = true;
     particle.flux *= scatter->share;
+    particle.found.scatter(*scatter, mean(scatter->share));
     if (!is_finite(particle.flux)) return;
     const float survival = std::min(max_component(particle.flux) / begun_with, kMaxSurvival);
     if (!(particle.random.next_1d() < survival)) return;
@@ -101,7 +145,10 @@ void ParticleTracer::connect(const PathVertex& vertex, Particle& particle, RayQu
   const Ray ray{origin, (seen->lens - origin) / distance, 0, distance * (1 - std::max(seen->near, 1e-5f))};
   bool occluded = false;
   queries.occluded({&ray, 1}, {&occluded, 1}, false);
-  if (!occluded) trace.splats.push_back({x, y, radiance, particle.unreachable});
+  if (occluded) return;
+  const float albedo = std::min(mean(f) * kPi, 1.0f);  // of a diffuse surface
+  const float found = albedo * particle.found.radiance() * particle.found.by_photons();
+  trace.splats.push_back({x, y, radiance, particle.unreachable, static_cast<double>(radiance) * static_cast<double>(found)});
 }
 
 }  // namespace fluxfarm

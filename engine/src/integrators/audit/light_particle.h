@@ -18,6 +18,8 @@ struct Splat {
   float x, y;        // in pixels from the film's top left corner
   float radiance;    // mean over R, G, B, summed over the pixels: divide by the number of particles and pixels. W m^-2 sr^-1
   bool unreachable;  // the method cannot find this light
+  // Of light that was scattered sharply, what a path that finds it brings back times `radiance`: divide in the same way.
+  double sharp_square;
 };
 
 struct ParticleTrace {
