@@ -1,12 +1,18 @@
 #include "worker/pilot.h"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <optional>
+#include <span>
 #include <utility>
+#include <vector>
 
 #include "film/error_goal.h"
+#include "film/tile_grid.h"
+#include "integrators/audit/light_audit.h"
+#include "integrators/irradiance/cache_quality.h"
 #include "integrators/plan/method_forecast.h"
 #include "support/error.h"
 #include "worker/pilot_trial.h"
@@ -18,12 +24,17 @@ namespace {
 // samples (engine/docs/decisions/0012): photons 1.3 to 1.9, caches 1.2 to 1.7, with photons 1.7 to 2.5.
 constexpr double kRayWithPhotons = 1.6, kRayWithCache = 1.5, kRayWithBoth = 2.3;
 
-// What is left of noise after the first round: more than half is gone, as few samples let it look larger than it is. Path tracing
-// on seven of our scenes: 0.22 to 0.5.
-constexpr double kLeftAfterFirstRound = 0.37;
+// Samples of each pixel of a trial: one in each replicate, the fewest that tell of noise, and at most so many. They go on,
+// doubling, while trials of methods that are not likely to be taken cost no more than a part of the work that the likely one needs.
+constexpr std::uint32_t kTrialSamples = 8, kMostTrialSamples = 64;
+constexpr double kForTrials = 0.05;
+// Methods of which more than so many times the cost is foretold are given up before.
+constexpr double kStillLikely = 4;
+// Of what the picture may take of its pixels, at most so much is taken ahead in a few tiles.
+constexpr double kTakenAhead = 0.25;
 
-// Before a cache is tried: what its first level may take, in samples of path tracing, and how much of the indirect light's noise
-// it may leave, at best.
+// Before a cache is tried: what its first level may take, in samples of path tracing; and how much of the noise that a method is
+// there to take away it may leave, at best.
 constexpr double kHopedAhead = 12, kHopedLeft = 0.05;
 
 // Each pixel of the frame takes a hundred bytes while a cache is made.
@@ -77,25 +88,44 @@ Contender contender(const std::string& method, const Scene& scene, const char* w
   return result;
 }
 
+// What light that was scattered sharply adds to the variance of path tracing, by the side of the light: as a share of relMSE, a
+// mean over the pixels, after one sample of each.
+double sharp_square(const LightAudit& audit, PixelRect crop) {
+  double sum = 0;
+  const std::vector<PixelRect> rects = make_tiles(crop, kErrorTile);
+  for (std::size_t i = 0; i < audit.cells.size(); ++i) {
+    const LightAudit::Cell& cell = audit.cells[i];
+    sum += rects[i].pixels() * cell.sharp_square / (cell.radiance * cell.radiance + 1e-2);
+  }
+  return sum / crop.pixels();
+}
+
 class PilotRun {
  public:
   PilotRun(const PilotTask& task, const Goal& goal) : task_(task), goal_(goal) {}
 
   void run(Contender& path, Contender& photons, Contender& cache) const {
     try_out(path);
-    if (photons.integrator && fits(photons)) path.figures->unmet_noise = unmet_caustic(path, photons);
+    const double sharp = audited_square();
+    path.figures->unmet_noise = std::max(sharp - settled_noise(*path.figures), 0.0);
+    if (photons.integrator && !photons_may_gain(path, sharp)) {
+      photons.reason = "light from mirrors and gloss makes too little of the noise for the shooting of photons";
+    } else if (photons.integrator && fits(photons)) {
+      path.figures->unmet_noise = unmet(path, photons, sharp);
+    }
     const Contender& last = photons.figures ? photons : path;
     if (cache.integrator && scene_pixels() > kMostPixelsOfACache) {
       cache.reason = "the frame has more than " + std::to_string(kMostPixelsOfACache) + " pixels";
-    } else if (cache.integrator && !(may_gain(path) && may_gain(last))) {
+    } else if (cache.integrator && !(cache_may_gain(path) && cache_may_gain(last))) {
       cache.reason = "indirect light makes " + percent(last.indirect) + " of the noise: not enough for the making of a cache";
-    } else if (cache.integrator && fits(cache)) {
-      cache.figures->in_levels = true;
+    } else if (cache.integrator) {
+      fits(cache);
     }
     if (photons.figures && has_unreachable_light(task_.scene)) {
       path.figures.reset();
       path.reason = "no path finds the light of point lamps and suns in mirrors and through smooth glass";
     }
+    go_on(std::array{&path, &photons, &cache}, sharp);
   }
 
  private:
@@ -103,11 +133,17 @@ class PilotRun {
 
   // Tries it out, unless it takes more memory than a method may.
   bool fits(Contender& contender) const {
+    return within_memory(contender, [&] { try_out(contender); });
+  }
+
+  template <typename Work>
+  static bool within_memory(Contender& contender, Work work) {
     try {
-      try_out(contender);
+      work();
       return true;
     } catch (const ResourceError& error) {
       contender.trial.reset();
+      contender.figures.reset();
       contender.reason = error.what();
       return false;
     }
@@ -119,31 +155,98 @@ class PilotRun {
     const std::vector<Film> half = trial.films();
     trial.advance(kTrialSamples);
     contender.indirect = indirect_share(half, trial.films());
-    const double ray = work_of_ray(*contender.integrator);
-    MethodTrial& figures = contender.figures.emplace(MethodTrial{trial.noise(), 0, trial.bias(), 0, 0, false, 0});
-    for (TileNoise& tile : figures.noise) tile.share *= kLeftAfterFirstRound;
-    figures.work_per_sample = ray * trial.rays_per_sample();
-    // Photons are shot for each sample anew, a cache is made once.
-    figures.work_ahead = contender.integrator->parts().irradiance_cache ? ray * trial.rays_ahead() : 0;
-    figures.seconds_per_work = trial.seconds() / (ray * trial.rays());
+    measure(contender);
   }
 
-  // What caustics that photons see add to the noise of path tracing, beyond what it has met of them.
-  double unmet_caustic(const Contender& path, const Contender& photons) const {
-    const double brightness = kLeftOfLamp * brightest_radiance(task_.scene);
-    const double all = photons.trial->caustic_noise(brightness) * kTrialSamples / kFirstRound;
-    const double met = std::max(mean_noise(*path.figures) - mean_noise(*photons.figures), 0.0);
-    return std::max(all - met, 0.0);
+  static void measure(Contender& contender) {
+    const PilotTrial& trial = *contender.trial;
+    const double unmet = contender.figures ? contender.figures->unmet_noise : 0;
+    const double ray = work_of_ray(*contender.integrator);
+    const bool in_levels = contender.integrator->parts().irradiance_cache;
+    // Photons are shot for each sample anew, a cache is made once.
+    contender.figures = {.samples = static_cast<double>(trial.samples()),
+                         .noise = trial.noise(),
+                         .bias = trial.bias(),
+                         .unmet_noise = unmet,
+                         .work_per_sample = ray * trial.rays_per_sample(),
+                         .work_ahead = in_levels ? ray * trial.rays_ahead() : 0,
+                         .in_levels = in_levels,
+                         .seconds_per_work = trial.seconds() / (ray * trial.rays())};
+  }
+
+  double audited_square() const {
+    const LightAudit audit = audit_light(task_.scene, task_.crop, task_.seed, task_.threads, task_.cancelled, true);
+    return sharp_square(audit, task_.crop);
+  }
+
+  // What light for photons adds to the noise of path tracing, beyond what it has met of it: by the side of the light, which does
+  // not see through mirrors and glass, or by the caustics that photons see.
+  double unmet(const Contender& path, const Contender& photons, double sharp) const {
+    const double all = std::max(sharp, photons.trial->caustic_square(kLeftOfLamp * brightest_radiance(task_.scene)));
+    return std::max(all - std::max(settled_noise(*path.figures) - settled_noise(*photons.figures), 0.0), 0.0);
+  }
+
+  // Whether photons would cost less than paths if they took away all noise by light that is scattered sharply. Over delta lobes
+  // nobody knows: the side of the light does not see all of it.
+  bool photons_may_gain(const Contender& path, double sharp) const {
+    if (task_.scene.census().delta_lobes) return true;
+    MethodTrial hoped = *path.figures;
+    const double in_noise = std::min(sharp / settled_noise(*path.figures), 1.0);
+    for (TileNoise& tile : hoped.noise) tile.share *= 1 - (1 - kHopedLeft) * in_noise;
+    hoped.unmet_noise = 0;
+    hoped.work_per_sample *= kRayWithPhotons;
+    return cost_of(hoped) < cost_of(*path.figures);
   }
 
   // Whether a cache that takes little and works well would cost less than that method.
-  bool may_gain(const Contender& than) const {
+  bool cache_may_gain(const Contender& than) const {
     MethodTrial hoped = *than.figures;
     for (TileNoise& tile : hoped.noise) tile.share *= 1 - (1 - kHopedLeft) * than.indirect;
     hoped.unmet_noise = 0;
     hoped.in_levels = true;
     hoped.work_ahead = kHopedAhead * hoped.work_per_sample;
-    return cost(forecast(hoped, goal_), goal_) < cost(forecast(*than.figures, goal_), goal_);
+    return cost_of(hoped) < cost_of(*than.figures);
+  }
+
+  double cost_of(const MethodTrial& trial) const { return cost(forecast(trial, goal_), goal_); }
+
+  // Doubles the samples of trials, as long as that is worth it.
+  void go_on(std::span<Contender* const> contenders, double sharp) const {
+    while (Contender* best = cheapest(contenders)) {
+      const MethodForecast expected = forecast(*best->figures, goal_);
+      const std::uint32_t samples = 2 * best->trial->samples();
+      if (samples > std::min<double>(most_samples(*best), kTakenAhead * expected.samples)) return;
+      std::vector<Contender*> likely;
+      double work = 0;  // not for the picture
+      for (Contender* each : contenders) {
+        if (!each->trial) continue;
+        const bool goes_on = each->figures && cost_of(*each->figures) <= kStillLikely * cost(expected, goal_) &&
+                             each->trial->samples() < samples && samples <= most_samples(*each);
+        if (goes_on) likely.push_back(each);
+        if (each == best && goal_.rel_error) continue;
+        work += work_of_ray(*each->integrator) * (each->trial->rays() + (goes_on ? each->trial->rays_to_double() : 0));
+      }
+      if (work > kForTrials * expected.work) return;
+      for (Contender* each : likely) {
+        if (within_memory(*each, [&] { each->trial->advance(samples); })) measure(*each);
+      }
+      Contender &path = *contenders[0], &photons = *contenders[1];
+      if (path.figures && photons.figures) path.figures->unmet_noise = unmet(path, photons, sharp);
+    }
+  }
+
+  // Null: none has figures.
+  Contender* cheapest(std::span<Contender* const> contenders) const {
+    Contender* best = nullptr;
+    for (Contender* each : contenders) {
+      if (each->figures && (best == nullptr || cost_of(*each->figures) < cost_of(*best->figures))) best = each;
+    }
+    return best;
+  }
+
+  // A trial stays in a cache's first level.
+  static std::uint32_t most_samples(const Contender& contender) {
+    return contender.figures->in_levels ? kFirstCacheLevel : kMostTrialSamples;
   }
 
   const PilotTask& task_;

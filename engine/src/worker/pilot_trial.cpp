@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <functional>
 
 #include "film/error_goal.h"
 #include "film/error_shares.h"
@@ -17,11 +18,16 @@ namespace {
 
 constexpr std::size_t kOneTileOf = 10, kFewestTiles = 6, kMostTiles = 64;
 
-// Adds up `value(x, y)` over all pixels of the film.
+// Side of the cells in which noise is looked at, in pixels, and the part of them, one at least, whose noise counts no more than
+// that of the largest other: a single bright sample, which all methods may have met, would outweigh all others. On veach-mis such
+// samples make the noise of 8 samples 0.5 or 50, by chance.
+constexpr int kCell = 8;
+constexpr double kCapped = 0.01;
+
+// Adds up `value(x, y)` over all pixels.
 template <typename Value>
-double sum_over(const Film& film, Value value) {
+double sum_over(PixelRect rect, Value value) {
   double sum = 0;
-  const PixelRect rect = film.crop();
   for (int y = rect.y; y < rect.y + rect.height; ++y) {
     for (int x = rect.x; x < rect.x + rect.width; ++x) sum += value(x, y);
   }
@@ -36,6 +42,27 @@ double relative(const std::array<double, 3>& squares, const Lanes& mean) {
     sum += squares[c] / (value * value + 1e-2) / 3;
   }
   return sum;
+}
+
+// Of a cell, means over its pixels.
+struct CellNoise {
+  std::size_t tile;
+  int pixels;
+  double share;         // of relMSE
+  double indirect = 0;  // the part of it in the indirect layer
+};
+
+// Lessens the largest ones so that none has more noise than the largest of the others.
+void cap(std::vector<CellNoise>& cells) {
+  const auto capped = static_cast<std::size_t>(std::max(std::round(kCapped * static_cast<double>(cells.size())), 1.0));
+  const auto next = cells.begin() + static_cast<std::ptrdiff_t>(std::min(capped, cells.size() - 1));
+  std::ranges::nth_element(cells, next, std::greater{}, &CellNoise::share);
+  const double most = next->share;
+  for (CellNoise& cell : cells) {
+    if (!(cell.share > most)) continue;
+    cell.indirect *= most / cell.share;
+    cell.share = most;
+  }
 }
 
 }  // namespace
@@ -96,29 +123,36 @@ void PilotTrial::advance(std::uint32_t samples) {
 }
 
 std::vector<TileNoise> PilotTrial::noise() const {
+  std::vector<CellNoise> cells;
   std::vector<TileNoise> tiles;
-  for (const Film& film : films_) {
-    const ErrorShares errors(film, film.crop());
-    const double sum = sum_over(film, [&](int x, int y) { return errors.at(x, y); });
-    tiles.push_back({sum / film.crop().pixels(), film.crop().pixels()});
+  for (std::size_t tile = 0; tile < films_.size(); ++tile) {
+    const PixelRect crop = films_[tile].crop();
+    const ErrorShares errors(films_[tile], crop);
+    for (const PixelRect& rect : make_tiles(crop, kCell)) {
+      const double sum = sum_over(rect, [&](int x, int y) { return errors.at(x, y); });
+      cells.push_back({tile, rect.pixels(), sum / rect.pixels()});
+    }
+    tiles.push_back({0, crop.pixels()});
   }
+  cap(cells);
+  for (const CellNoise& cell : cells) tiles[cell.tile].share += cell.share * cell.pixels / tiles[cell.tile].pixels;
   return tiles;
 }
 
 double PilotTrial::bias() const {
   if (integrator_.bias() == Integrator::Bias::kNone) return 0;
   double sum = 0;
-  for (const Film& film : films_) sum += sum_over(film, [&](int x, int y) { return film.bias_share(x, y); });
+  for (const Film& film : films_) sum += sum_over(film.crop(), [&](int x, int y) { return film.bias_share(x, y); });
   return std::max(sum / task_.tried_pixels(), 0.0);
 }
 
-double PilotTrial::caustic_noise(double brightness) const {
+double PilotTrial::caustic_square(double brightness) const {
   if (!task_.scene.census().delta_lobes) return 0;
   double sum = 0;
   for (const Film& film : films_) {
-    sum += sum_over(film, [&](int x, int y) {
+    sum += sum_over(film.crop(), [&](int x, int y) {
       const Rgb caustic = film.layer_mean(x, y, LightLayer::kCaustic);
-      const auto square = [&](float light) { return std::max(static_cast<double>(light), 0.0) * brightness / done_; };
+      const auto square = [&](float light) { return std::max(static_cast<double>(light), 0.0) * brightness; };
       return relative({square(caustic.r), square(caustic.g), square(caustic.b)}, film.estimate(x, y).mean);
     });
   }
@@ -132,16 +166,25 @@ double PilotTrial::rays_per_sample() const {
 
 double indirect_share(const std::vector<Film>& half, const std::vector<Film>& all) {
   const auto square = [](float difference) { return static_cast<double>(difference) * static_cast<double>(difference); };
-  double indirect = 0, whole = 0;
+  std::vector<CellNoise> cells;
   for (std::size_t i = 0; i < all.size(); ++i) {
-    indirect += sum_over(all[i], [&](int x, int y) {
-      const Rgb layer = all[i].layer_mean(x, y, LightLayer::kIndirect) - half[i].layer_mean(x, y, LightLayer::kIndirect);
-      return relative({square(layer.r), square(layer.g), square(layer.b)}, all[i].estimate(x, y).mean);
-    });
-    whole += sum_over(all[i], [&](int x, int y) {
-      const Lanes mean = all[i].estimate(x, y).mean, first = half[i].estimate(x, y).mean;
-      return relative({square(mean[0] - first[0]), square(mean[1] - first[1]), square(mean[2] - first[2])}, mean);
-    });
+    for (const PixelRect& rect : make_tiles(all[i].crop(), kCell)) {
+      const double indirect = sum_over(rect, [&](int x, int y) {
+        const Rgb layer = all[i].layer_mean(x, y, LightLayer::kIndirect) - half[i].layer_mean(x, y, LightLayer::kIndirect);
+        return relative({square(layer.r), square(layer.g), square(layer.b)}, all[i].estimate(x, y).mean);
+      });
+      const double share = sum_over(rect, [&](int x, int y) {
+        const Lanes mean = all[i].estimate(x, y).mean, first = half[i].estimate(x, y).mean;
+        return relative({square(mean[0] - first[0]), square(mean[1] - first[1]), square(mean[2] - first[2])}, mean);
+      });
+      cells.push_back({i, rect.pixels(), share / rect.pixels(), indirect / rect.pixels()});
+    }
+  }
+  cap(cells);
+  double indirect = 0, whole = 0;
+  for (const CellNoise& cell : cells) {
+    indirect += cell.indirect * cell.pixels;
+    whole += cell.share * cell.pixels;
   }
   return whole > 0 ? std::min(indirect / whole, 1.0) : 0;
 }

@@ -35,16 +35,19 @@ class PilotTrial {
   // Takes samples up to `samples` of each pixel, in the passes of a picture.
   void advance(std::uint32_t samples);
 
-  // Share of relMSE by noise, of each tile; from two samples on.
+  // Share of relMSE by noise, of each tile; from two samples on. A few bright samples do not count in full.
   std::vector<TileNoise> noise() const;
   // By the method's bias, mean over the pixels that were tried.
   double bias() const;
-  // Share of relMSE, mean over the same, of as many samples of which few bring back `brightness` and all others nothing, so that
-  // the mean is the caustic layer.
-  double caustic_noise(double brightness) const;
+  // Share of relMSE, mean over the same, of one sample that seldom brings back `brightness` and else nothing, so that the mean is
+  // the caustic layer.
+  double caustic_square(double brightness) const;
 
+  std::uint32_t samples() const { return done_; }                         // of each pixel
   double rays_ahead() const { return static_cast<double>(rays_ahead_); }  // of preparing the first pass
   double rays_per_sample() const;  // of every pixel of the crop, with what later passes were prepared by
+  // That as many samples again take as there are, of a method that prepares no more ahead.
+  double rays_to_double() const { return static_cast<double>(rays_of_passes_ + rays_of_tiles_); }
   double rays() const { return static_cast<double>(rays_ahead_ + rays_of_passes_ + rays_of_tiles_); }
   double seconds() const { return seconds_; }
   const std::vector<Film>& films() const { return films_; }  // one for each tile

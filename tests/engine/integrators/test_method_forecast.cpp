@@ -12,7 +12,8 @@ namespace {
 constexpr int kPixels = 1024;  // of a tile
 
 MethodTrial trial(double noise, double work_per_sample) {
-  return {{{noise, kPixels}, {noise, kPixels}}, 0, 0, work_per_sample, 0, false, 1e-6};
+  return {
+      .samples = 16, .noise = {{noise, kPixels}, {noise, kPixels}}, .work_per_sample = work_per_sample, .seconds_per_work = 1e-6};
 }
 
 TEST(MethodForecast, FourTimesTheSamplesHalveTheErrorOrALittleMore) {
@@ -32,6 +33,14 @@ TEST(MethodForecast, AnErrorGoalTakesTheFirstRoundAtLeastAndMoreForLess) {
   EXPECT_LE(coarse.error, 0.1);
   EXPECT_GT(fine.samples, 3 * coarse.samples);
   EXPECT_LT(fine.samples, 5 * coarse.samples);
+}
+
+TEST(MethodForecast, MoreOfTheSameTrialForetellsTheSame) {
+  MethodTrial longer = trial(0.04, 1000);
+  longer.samples = 64;
+  for (TileNoise& tile : longer.noise) tile.share = std::pow(forecast_samples(trial(0.04, 1000), 64).error, 2);
+  EXPECT_NEAR(forecast_samples(longer, 1000).error, forecast_samples(trial(0.04, 1000), 1000).error, 1e-6);
+  EXPECT_NEAR(settled_noise(longer), settled_noise(trial(0.04, 1000)), 1e-6);
 }
 
 TEST(MethodForecast, NoiseInOneTileTakesFewerSamplesThanTheSameNoiseInAll) {
@@ -63,7 +72,7 @@ TEST(MethodForecast, ASliverOfATileWeighsAsMuchAsItsPixels) {
 TEST(MethodForecast, BlurOfPhotonsFalls) {
   MethodTrial photons = trial(0, 1);
   photons.bias = 0.01;
-  EXPECT_NEAR(forecast_samples(photons, 64 * kTrialSamples).error, 0.1 / 4, 1e-6);
+  EXPECT_NEAR(forecast_samples(photons, 64 * photons.samples).error, 0.1 / 4, 1e-6);
 }
 
 TEST(MethodForecast, AGoalInSecondsIsOneInRaysSoThatNoClockDecides) {
@@ -98,7 +107,7 @@ TEST(MethodChoice, TakesWhatNeedsTheLeastWorkForTheGoal) {
 TEST(MethodChoice, LightThatATrialDidNotMeetCounts) {
   MethodTrial blind = trial(0.01, 1000);
   EXPECT_EQ(choose({{}, {}, 0.05}, blind, trial(0.04, 1000)).method, "a");
-  blind.unmet_noise = 1;
+  blind.unmet_noise = 16;
   EXPECT_EQ(choose({{}, {}, 0.05}, blind, trial(0.04, 1000)).method, "b");
 }
 

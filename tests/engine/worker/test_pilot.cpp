@@ -52,6 +52,17 @@ SceneBuilder glass_ball() {
   return builder;
 }
 
+// A small lamp over a metal plate in a room.
+SceneBuilder metal_plate(float alpha, float lamp_side) {
+  SceneBuilder builder;
+  builder.shape(cube(Transform::scale(1.5, 1, 1.5)), builder.diffuse(0.4f), 0, true);
+  builder.lamp_down(0, 0.99f, 0, lamp_side, lamp_side, builder.diffuse(0), 1 / (lamp_side * lamp_side));
+  RoughConductorDescription metal{{.perfect = true}, {.alpha_u = alpha, .alpha_v = alpha}};
+  builder.floor(-0.8f, 0.5f, builder.add(metal));
+  builder.look({0, 0, 1.4}, {0, -0.3, 0});
+  return builder;
+}
+
 Method pilot(const Scene& scene, const Goal& goal, int threads = 1, std::uint64_t seed = 3) {
   return make_method("auto", scene, {kFrame, seed, goal}, threads, kNever);
 }
@@ -84,6 +95,30 @@ TEST(Pilot, ShootsPhotonsOrCachesWithThemUnderASmallLampOverGlass) {
   // What paths have not met of the caustic counts: they would take many times as much, not the little that they saw.
   const MethodCandidate& path = candidate(method, "path");
   EXPECT_GT(path.forecast->work, 5 * candidate(method, method.choice->method).forecast->work);
+}
+
+// Nearly no path of its samples has met the lamp in the plate: what that will do is told by the side of the light.
+TEST(Pilot, ShootsPhotonsWhereASmoothPlateReflectsASmallLamp) {
+  const Scene scene(in_frame(metal_plate(0.01f, 0.05f)), 1);
+  const Method method = pilot(scene, kFivePercent);
+  EXPECT_TRUE(method.integrator->finds_caustics()) << method.choice->reason;
+  const MethodCandidate& path = candidate(method, "path");
+  EXPECT_GT(path.forecast->work, 2 * candidate(method, method.choice->method).forecast->work);
+}
+
+TEST(Pilot, TriesNoPhotonsWhereALargeLampShinesOnARoughPlate) {
+  const Scene scene(in_frame(metal_plate(0.4f, 1)), 1);
+  const Method method = pilot(scene, kFivePercent);
+  EXPECT_FALSE(method.integrator->finds_caustics()) << method.choice->reason;
+  EXPECT_EQ(candidate(method, "photon-progressive").reason.find("light from mirrors and gloss makes too little of the noise"), 0u);
+}
+
+TEST(Pilot, LooksLongerWhereMoreIsAtStake) {
+  const Scene scene(in_frame(lit_plane()), 1);
+  const Method hasty = pilot(scene, {{}, {}, 0.2}), careful = pilot(scene, {{}, {}, 0.0005});
+  EXPECT_EQ(candidate(hasty, "path").trial->samples, 8);
+  EXPECT_EQ(candidate(careful, "path").trial->samples, 64);
+  EXPECT_NE(careful.known.tile(3, {32, 64}, {0, 0, 32, 32}), nullptr);
 }
 
 TEST(Pilot, LeavesPathsOutWhereTheyMissAPointLampThroughGlass) {

@@ -10,17 +10,22 @@
 namespace fluxfarm {
 namespace {
 
-// relMSE by noise falls as samples^-kFall, by the blur of photons as samples^-kBlurFall.
-constexpr double kFall = 1.15, kBlurFall = 2.0 / 3;
+// relMSE by noise falls as samples^-kFirstFall, as samples are stratified and few of them let it look larger than it is, and after
+// so many as samples^-kLaterFall. By the blur of photons it falls as samples^-kBlurFall.
+constexpr double kFirstFall = 1.25, kLaterFall = 1.1, kSettled = 128, kBlurFall = 2.0 / 3;
 
 // What the bound of an error goal and rounds that double samples add: a picture is done when its error is so much below its goal.
-constexpr double kMargin = 0.8;
+constexpr double kMargin = 0.85;
 
 // Of the next level of a cache over the one before: the rays that it takes, first and later, and the squared bias that it leaves.
 constexpr double kSecondLevel = 1.7, kNextLevel = 2.25, kBiasLeft = 1 / 3.7;
 
 // Rays of path tracing that a second is taken for: two threads trace 6 to 14 millions in our scenes.
 constexpr double kWorkOfSecond = 1e7;
+
+double fallen(double samples) {
+  return std::pow(std::min(samples, kSettled), -kFirstFall) * std::pow(std::max(samples / kSettled, 1.0), -kLaterFall);
+}
 
 struct Levels {
   double work = 0, bias = 1;  // over those of the first
@@ -51,9 +56,9 @@ double spread_gain(const MethodTrial& trial) {
 }
 
 MethodForecast forecast_spread(const MethodTrial& trial, double samples, double gain) {
-  const double blur = std::pow(kTrialSamples / std::max<double>(samples, kTrialSamples), kBlurFall);
+  const double blur = std::pow(trial.samples / std::max(samples, trial.samples), kBlurFall);
   const Levels level = trial.in_levels ? levels(samples) : Levels{1, blur};
-  const double noise = (mean_noise(trial) * gain + trial.unmet_noise) * std::pow(kFirstRound / samples, kFall);
+  const double noise = mean_noise(trial) * gain * fallen(samples) / fallen(trial.samples) + trial.unmet_noise / samples;
   MethodForecast result;
   result.samples = samples;
   result.error = std::sqrt(noise + trial.bias * level.bias);
@@ -72,6 +77,8 @@ double mean_noise(const MethodTrial& trial) {
   }
   return sum / pixels;
 }
+
+double settled_noise(const MethodTrial& trial) { return mean_noise(trial) * fallen(kSettled) / fallen(trial.samples) * kSettled; }
 
 MethodForecast forecast_samples(const MethodTrial& trial, double samples) { return forecast_spread(trial, samples, 1); }
 

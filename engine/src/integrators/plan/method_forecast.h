@@ -1,8 +1,8 @@
 // How far a method gets with so many samples, from its trial, and how many a goal takes.
 //
-// The rules are fits to our scenes (engine/docs/decisions/0012): noise falls a little faster than 1 / samples, as samples are
-// stratified; each level of an irradiance cache takes about twice the rays of the one before, and a quarter of its bias is left;
-// the bias of photons falls as samples^(-2/3).
+// The rules are fits to our scenes (engine/docs/decisions/0012): noise falls a little faster than 1 / samples; each level of an
+// irradiance cache takes about twice the rays of the one before, and a quarter of its bias is left; the bias of photons falls as
+// samples^(-2/3).
 #pragma once
 
 #include <cstdint>
@@ -12,12 +12,12 @@
 
 namespace fluxfarm {
 
-// Samples of each pixel that a trial takes: one in each replicate, the fewest that tell of noise.
-inline constexpr std::uint32_t kTrialSamples = 8;
 inline constexpr double kMostForecast = 1 << 20;  // samples
 
 // Mean over the pixels of the trial.
 double mean_noise(const MethodTrial& trial);
+// That of one sample of each pixel, as many of them will show it.
+double settled_noise(const MethodTrial& trial);
 
 // After `samples` of every pixel.
 MethodForecast forecast_samples(const MethodTrial& trial, double samples);

@@ -7,16 +7,16 @@ namespace fluxfarm {
 
 // What one tile that was tried has.
 struct TileNoise {
-  double share = 0;  // of relMSE by noise, a mean over its pixels, that kFirstRound samples of each would leave
+  double share = 0;  // of relMSE by noise, a mean over its pixels
   int pixels = 0;
 };
 
 struct MethodTrial {
+  double samples = 0;  // of each pixel of its tiles
   std::vector<TileNoise> noise;
-  // The same share by light that the trial's samples are not likely to have met, and after the trial by the method's bias: means
-  // over all pixels that were tried.
+  double bias = 0;  // share of relMSE by the method's bias, a mean over all pixels that were tried
+  // Share of relMSE that light which those samples are not likely to have met leaves after one sample of each pixel.
   double unmet_noise = 0;
-  double bias = 0;
   // Rays, each counted as so many of path tracing as it takes the time of: for one sample of every pixel, and before the first.
   double work_per_sample = 0, work_ahead = 0;
   // Whether there are levels of a cache: the first takes `work_ahead`, each later one more. Else the work is done once.
