@@ -3,11 +3,11 @@ foretold of that time; and the true error of every run.
 
     chooser.py [--goals 0.05 0.02] [--seeds 3] [--most-seconds 120] [--out out] [SCENE ...]
 
-Two threads; seconds are those of preparing and rendering, medians over the seeds. A method that takes longer than
+Goals below 3 % are for smaller pictures. Two threads; seconds are those of preparing and rendering, medians over the seeds. A method that takes longer than
 --most-seconds, or that does not render the scene, is shown as such; of the slow ones the limit counts, so that "worst
 over auto" is a lower bound. Progressive photons are left out where they are path tracing, bit by bit.
 
-The reference are two independent runs to half the smallest goal, kept in the --out folder (delete them when a scene
+The reference are two independent runs to half the goal, kept in the --out folder (delete them when a scene
 changes). True relMSE is the mean of (I - A) (I - B) / (R^2 + 0.01) over both, A and B, and their mean R: their noise
 drops out, but not what both have missed where rare samples are bright. With halves no better than the goal plates have
 0.054 to 0.079 of 0.05, where 4096 samples a pixel tell 0.046 to 0.050.
@@ -30,20 +30,33 @@ ENGINE = Path(sys.executable).with_name("fluxfarm-engine")
 OUTSIDE = Path(os.environ.get("FLUXFARM_SCENES_DATA", ROOT.parent / "shared" / "scenes-data"))
 METHODS = ("path", "photon-progressive", "irradiance-cache")
 THREADS = 2
-# Sides for which the best method takes a second or more to 5 %, and references can be had.
+
+
+@dataclass(frozen=True)
+class Subject:
+    scene: Path
+    # Of the picture, for goals from 3 % on and for smaller ones: the best method takes a second or more, and references
+    # can be had.
+    coarse: str
+    fine: str
+
+    def size(self, goal: float) -> str:
+        return self.coarse if goal >= 0.03 else self.fine
+
+
 SCENES = {
-    "cornell": (ROOT / "scenes" / "cornell" / "scene.xml", "256x256"),
-    "cornell-glass": (ROOT / "scenes" / "cornell-glass" / "scene.xml", "192x192"),
-    "furnace": (ROOT / "scenes" / "furnace" / "scene.xml", "256x192"),
-    "interior": (ROOT / "scenes" / "interior" / "scene.xml", "128x72"),
-    "plates": (ROOT / "tests" / "benchmarks" / "plates.xml", "256x256"),
-    "cornell-box": (OUTSIDE / "cornell-box" / "scene.xml", "256x256"),
-    "veach-mis": (OUTSIDE / "veach-mis" / "scene.xml", "256x144"),
-    "veach-bidir": (OUTSIDE / "veach-bidir" / "scene.xml", "64x36"),
-    "veach-ajar": (OUTSIDE / "veach-ajar" / "scene.xml", "64x36"),
-    "water-caustic": (OUTSIDE / "water-caustic" / "scene.xml", "96x54"),
-    "glass-of-milk": (OUTSIDE / "glass-of-milk" / "scene.xml", "64x64"),
-    "gltf-cornell-glass": (OUTSIDE / "gltf-cornell-glass" / "scene.glb", "128x128"),
+    "cornell": Subject(ROOT / "scenes" / "cornell" / "scene.xml", "256x256", "192x192"),
+    "cornell-glass": Subject(ROOT / "scenes" / "cornell-glass" / "scene.xml", "192x192", "96x96"),
+    "furnace": Subject(ROOT / "scenes" / "furnace" / "scene.xml", "256x192", "256x192"),
+    "interior": Subject(ROOT / "scenes" / "interior" / "scene.xml", "128x72", "64x36"),
+    "plates": Subject(ROOT / "tests" / "benchmarks" / "plates.xml", "256x256", "128x128"),
+    "cornell-box": Subject(OUTSIDE / "cornell-box" / "scene.xml", "256x256", "192x192"),
+    "veach-mis": Subject(OUTSIDE / "veach-mis" / "scene.xml", "256x144", "128x72"),
+    "veach-bidir": Subject(OUTSIDE / "veach-bidir" / "scene.xml", "64x36", "32x18"),
+    "veach-ajar": Subject(OUTSIDE / "veach-ajar" / "scene.xml", "64x36", "32x18"),
+    "water-caustic": Subject(OUTSIDE / "water-caustic" / "scene.xml", "96x54", "64x36"),
+    "glass-of-milk": Subject(OUTSIDE / "glass-of-milk" / "scene.xml", "64x64", "32x32"),
+    "gltf-cornell-glass": Subject(OUTSIDE / "gltf-cornell-glass" / "scene.glb", "128x128", "64x64"),
 }
 
 
@@ -70,14 +83,15 @@ class Outcome:
     reports: list[dict[str, Any]]
 
 
-def render(name: str, image: Path, method: str, seed: int, most_seconds: float | None, *goal: object) -> Run | str:
-    """The run, or why there is none."""
-    scene, size = SCENES[name]
+def render(name: str, size: str, image: Path, method: str, seed: int, most: float | None, goal: float) -> Run | str:
+    """The run, or why there is none. `most`: seconds."""
     report = image.with_suffix(".json")
     options = ("--size", size, "--threads", THREADS, "--seed", seed, "--integrator", method, "--report", report)
-    command = [str(word) for word in (ENGINE, "render", scene, "-o", image, *options, *goal)]
+    command = [ENGINE, "render", SCENES[name].scene, "-o", image, *options, "--rel-error", goal]
     try:
-        done = subprocess.run(command, capture_output=True, text=True, timeout=most_seconds, check=False)
+        done = subprocess.run(
+            [str(word) for word in command], capture_output=True, text=True, timeout=most, check=False
+        )
     except subprocess.TimeoutExpired:
         return "slow"
     if done.returncode != 0:
@@ -93,9 +107,10 @@ def read(image: Path) -> np.ndarray:
 def reference(name: str, goal: float, folder: Path) -> Halves:
     halves = []
     for seed in (900, 901):
-        image = folder / f"reference-{name}-{SCENES[name][1]}-{goal:g}-{seed}.exr"
+        size = SCENES[name].size(goal)
+        image = folder / f"reference-{name}-{size}-{goal / 2:g}-{seed}.exr"
         if not image.exists():
-            found = render(name, image, "photon-progressive", seed, None, "--rel-error", goal)
+            found = render(name, size, image, "photon-progressive", seed, None, goal / 2)
             if isinstance(found, str):
                 sys.exit(f"{name}: no reference: {found}")
         halves.append(read(image))
@@ -112,7 +127,7 @@ def true_error(pixels: np.ndarray, halves: Halves) -> float:
 def measure(name: str, method: str, goal: float, seeds: int, most: float, truth: Halves, folder: Path) -> Outcome | str:
     seconds, errors, reports = [], [], []
     for seed in range(1, seeds + 1):
-        run = render(name, folder / "run.exr", method, seed, most, "--rel-error", goal)
+        run = render(name, SCENES[name].size(goal), folder / "run.exr", method, seed, most, goal)
         if run == "slow":
             return Outcome(most, False, [], [])
         if isinstance(run, str):
@@ -188,11 +203,10 @@ def main() -> None:
     print("| " + " | ".join(columns) + " |\n|" + "---|" * len(columns), flush=True)
     rows = []
     for name in options.scenes:
-        if not SCENES[name][0].exists():
-            print(f"  left out: {SCENES[name][0]} does not exist (set FLUXFARM_SCENES_DATA)")
+        if not SCENES[name].scene.exists():
+            print(f"  left out: {SCENES[name].scene} does not exist (set FLUXFARM_SCENES_DATA)")
             continue
-        truth = reference(name, min(options.goals) / 2, folder)
-        rows += [compare(name, goal, options, truth, folder) for goal in options.goals]
+        rows += [compare(name, goal, options, reference(name, goal, folder), folder) for goal in options.goals]
     (folder / "chooser.json").write_text(json.dumps(rows, indent=2) + "\n")
 
 

@@ -8,9 +8,13 @@
 
 #include "film/error_goal.h"
 #include "film/tile_grid.h"
+#include "support/failure_row.h"
 
 namespace fluxfarm {
 namespace {
+
+using testing::percent;
+using testing::tell_failure;
 
 constexpr double kBase = 0.2, kNoise = 0.05, kEventMean = 0.2, kTruth = kBase + kEventMean;
 constexpr PixelRect kCrop{0, 0, 160, 125};  // 20,000 pixels
@@ -79,6 +83,8 @@ LightAudit truth_seen_by_light() {
   return audit;
 }
 
+std::string row_of(double p) { return "rare event, 1 in " + std::to_string(std::lround(1 / p)); }
+
 class RareEventsMet : public ::testing::TestWithParam<double> {};
 
 // Eight pictures: with a coverage of 95 % three or more would miss the goal once in 170 runs.
@@ -89,7 +95,10 @@ TEST_P(RareEventsMet, AreSampledUntilTheClaimHolds) {
     const Outcome outcome = run(GetParam(), goal, seed);
     EXPECT_TRUE(outcome.claimed);
     missed += outcome.true_error > goal.rel_error;
-    if (seed == 1) std::printf("p = 1/%.0f: true error %.3f at %.0f spp\n", 1 / GetParam(), outcome.true_error, outcome.spp);
+    if (seed != 1) continue;
+    tell_failure(row_of(GetParam()), "on",
+                 "claims 10 % with a true error of " + percent(outcome.true_error, "%.1f %%") + " after " +
+                     std::to_string(std::lround(outcome.spp)) + " samples a pixel");
   }
   EXPECT_LE(missed, 2);
 }
@@ -108,6 +117,8 @@ TEST(RareEvents, NeverMetAreNotClaimedAgainstTheAudit) {
   const Outcome blind = run(1e-9, goal, 1);
   EXPECT_TRUE(blind.claimed);
   EXPECT_GT(blind.true_error, 0.4);
+  tell_failure("event never met", "off", "claims 10 % with a true error of " + percent(blind.true_error, "%.0f %%"));
+  tell_failure("event never met", "on", "\"" + outcome.warning + "\"");
 }
 
 TEST(RareEvents, ThatWereMetSatisfyTheAudit) {
@@ -161,6 +172,12 @@ TEST(RareEvents, SumsOverSumsKeepTheTruthThatMeansOfMeansLose) {
   const Merged merged = merge_stopped_shards(1.0 / 200, 4000);
   EXPECT_NEAR(merged.sum_over_sum, 1.0, 0.005);
   EXPECT_NEAR(merged.mean_of_means, 0.698, 0.02);
+  for (const double p : {1.0 / 200, 1.0 / 2000, 1.0 / 20000}) {
+    const double stopped_early = merge_stopped_shards(p, 4000).mean_of_means - 1;
+    tell_failure(row_of(p), "off", percent(stopped_early) + " where each pixel ends by a Z-test");
+  }
+  tell_failure("merged shards", "off", percent(merged.mean_of_means - 1) + " by a mean of means");
+  tell_failure("merged shards", "on", percent(merged.sum_over_sum - 1) + " by sums over sums");
 }
 
 }  // namespace

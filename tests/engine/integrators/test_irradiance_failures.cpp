@@ -11,6 +11,7 @@
 #include "integrators/irradiance_places.h"
 #include "integrators/photon_scenes.h"
 #include "support/error.h"
+#include "support/failure_row.h"
 
 namespace fluxfarm {
 namespace {
@@ -22,8 +23,11 @@ using testing::cube;
 using testing::Gathered;
 using testing::gathered;
 using testing::guarded_cache;
+using testing::percent;
 using testing::SceneBuilder;
 using testing::seen_places;
+using testing::tell_failure;
+using testing::told_by_auto;
 using testing::unguarded_cache;
 
 constexpr double kRms = 0.01, kLargest = 0.05;
@@ -52,15 +56,20 @@ std::string told(const CacheError& e) {
          std::to_string(e.records);
 }
 
-void expect_guarded(const SceneDescription& description, void (*strip)(HemisphereIrradiance&)) {
+// `key` is that of the row in the page of failures.
+void expect_guarded(const std::string& key, const SceneDescription& description, void (*strip)(HemisphereIrradiance&)) {
   const Scene scene(description, 1);
   const std::vector<GatherPlace> places = seen_places(scene, kSide);
   ASSERT_GT(places.size(), kSide * kSide / 2);
   const std::vector<Gathered> truth = gathered(scene, places, kStrata);
   const CacheError on = cache_error(scene, places, truth, guarded_cache, kSeeds);
   const CacheError off = cache_error(scene, places, truth, unguarded_cache(strip), kTwinSeeds);
-  ::testing::Test::RecordProperty("guards on", told(on));
-  ::testing::Test::RecordProperty("guards off", told(off));
+  const auto figures = [](const CacheError& e) {
+    return percent(e.rms, "%.2f %%") + " RMS, " + percent(e.largest, "%.1f %%") + " at most";
+  };
+  tell_failure(key, "off", figures(off));
+  tell_failure(key, "on", figures(on));
+  tell_failure(key, "auto", told_by_auto(description, 0.05));
   EXPECT_LE(on.rms, kRms) << told(on);
   EXPECT_LE(on.largest, kLargest) << told(on);
   EXPECT_GT(off.rms, 1.5 * kRms) << told(off);
@@ -90,7 +99,7 @@ SceneBuilder corner() {
   return builder;
 }
 
-TEST(IrradianceFailures, Corner) { expect_guarded(seen(corner(), {1.9, 1.0, 1.1}, {0.4, 0.3, 0.3}, 50), no_guard); }
+TEST(IrradianceFailures, Corner) { expect_guarded("corner", seen(corner(), {1.9, 1.0, 1.1}, {0.4, 0.3, 0.3}, 50), no_guard); }
 
 // A wall across the room, brighter on one side.
 SceneBuilder wall(double thickness, double bottom, double top) {
@@ -104,13 +113,17 @@ SceneBuilder wall(double thickness, double bottom, double top) {
 TEST(IrradianceFailures, SmallGapBetweenPolygons) {
   SceneBuilder builder = wall(0.02, 0.03, 2.5);
   builder.emitter(lamp({1, 2, 0.5f}, 5));
-  expect_guarded(seen(builder, {1.2, 1.5, 1}, {0, 0.2, -0.5}, 60), no_guard);
+  expect_guarded("small gap", seen(builder, {1.2, 1.5, 1}, {0, 0.2, -0.5}, 60), no_guard);
 }
 
-TEST(IrradianceFailures, ThinWall) { expect_guarded(seen(wall(0.005, 0, 1), {0, 2.3, 1.9}, {0, 0.3, -0.4}, 70), no_guard); }
+TEST(IrradianceFailures, ThinWall) {
+  expect_guarded("thin wall of a room", seen(wall(0.005, 0, 1), {0, 2.3, 1.9}, {0, 0.3, -0.4}, 70), no_guard);
+}
 
 // So low that most rays pass over it.
-TEST(IrradianceFailures, ThinLowWall) { expect_guarded(seen(wall(0.01, 0, 0.1), {0, 2.3, 1.9}, {0, 0, 0.2}, 50), no_clearance); }
+TEST(IrradianceFailures, ThinLowWall) {
+  expect_guarded("thin low wall", seen(wall(0.01, 0, 0.1), {0, 2.3, 1.9}, {0, 0, 0.2}, 50), no_clearance);
+}
 
 // Whole pictures, direct light and all.
 TEST(IrradianceFailures, ThinLowWallHasTheMeanOfThePathTracer) {
@@ -146,7 +159,10 @@ SceneBuilder bumps(double wavelength) {
 
 // Records on a flat floor there are 0.3 m apart.
 class BumpyFloor : public ::testing::TestWithParam<double> {};
-TEST_P(BumpyFloor, IsRight) { expect_guarded(seen(bumps(GetParam()), {0, 1.7, 1.9}, {0, 0, 0}, 60), no_guard); }
+TEST_P(BumpyFloor, IsRight) {
+  expect_guarded("bumpy floor " + std::to_string(GetParam()).substr(0, 4) + " m",
+                 seen(bumps(GetParam()), {0, 1.7, 1.9}, {0, 0, 0}, 60), no_guard);
+}
 INSTANTIATE_TEST_SUITE_P(IrradianceFailures, BumpyFloor, ::testing::Values(0.03, 0.06, 0.2, 0.6, 3.0));
 
 // Light of the picture's front is not light of the wall behind it.
@@ -154,7 +170,7 @@ TEST(IrradianceFailures, PaintingCloseToAWall) {
   SceneBuilder builder = room();
   builder.shape(cube(Transform::translate(0, 1.3, -1.96) * Transform::scale(0.6, 0.4, 0.02)), builder.diffuse(0.3f));
   builder.emitter(lamp({-1, 2, 1}));
-  expect_guarded(seen(builder, {1.5, 1.4, 0}, {0.2, 1.3, -2}, 50), no_guard);
+  expect_guarded("painting at a wall", seen(builder, {1.5, 1.4, 0}, {0.2, 1.3, -2}, 50), no_guard);
 }
 
 TEST(IrradianceFailures, CameraThatLooksIntoAMirror) {
@@ -163,7 +179,7 @@ TEST(IrradianceFailures, CameraThatLooksIntoAMirror) {
                 builder.add(ConductorDescription{.perfect = true, .specular_reflectance = Rgb{0.9f}}));
   builder.shape(cube(Transform::translate(0.5, 0.4, 1) * Transform::scale(0.4, 0.4, 0.4)), builder.diffuse(0.5f));
   builder.emitter(lamp({-0.7f, 1.7f, 0}));
-  expect_guarded(seen(builder, {0, 1.5, 0.4}, {0, 0.9, -2}, 70), no_guard);
+  expect_guarded("camera in a mirror", seen(builder, {0, 1.5, 0.4}, {0, 0.9, -2}, 70), no_guard);
 }
 
 // A black plate close under the ceiling: a record over it may see nothing at all, and must not say so of the bright ceiling beside.
@@ -171,7 +187,7 @@ TEST(IrradianceFailures, DarkSlit) {
   SceneBuilder builder = room();
   builder.shape(cube(Transform::translate(0, 2.47, 0) * Transform::scale(0.35, 0.005, 0.3)), builder.diffuse(0));
   builder.emitter(lamp({0, 1.5f, 0.5f}));
-  expect_guarded(seen(builder, {0, 1.7, 1.9}, {0, 2.5, 0.25}, 40), no_guard);
+  expect_guarded("dark slit", seen(builder, {0, 1.7, 1.9}, {0, 2.5, 0.25}, 40), no_guard);
 }
 
 // What shines on the wall from right beside it ends at the shadow's edge, of which a record before that sees as much to its left as
@@ -180,7 +196,7 @@ TEST(IrradianceFailures, ShadowOnTheFloorBesideAWall) {
   SceneBuilder builder = room();
   builder.shape(cube(Transform::translate(-0.8, 0.6, -1.3) * Transform::scale(0.3, 0.6, 0.02)), builder.diffuse(0.6f));
   builder.emitter(lamp({-1, 1.8f, -0.2f}));
-  expect_guarded(seen(builder, {0.4, 0.9, 0.2}, {-0.6, 0.15, -2}, 40), no_guard);
+  expect_guarded("shadow beside a wall", seen(builder, {0.4, 0.9, 0.2}, {-0.6, 0.15, -2}, 40), no_guard);
 }
 
 // Where there are no records paths are traced, so that few of them are no worse; stretched ones are.
@@ -190,6 +206,7 @@ TEST(IrradianceFailures, FewRecords) {
   const std::vector<Gathered> truth = gathered(scene, places, kStrata);
   const CacheError stretched = cache_error(scene, places, truth, unguarded_cache(no_guard), kTwinSeeds);
   EXPECT_GT(stretched.rms, 2 * kRms) << told(stretched);
+  tell_failure("few records", "off", percent(stretched.rms, "%.2f %%") + " RMS");
   double covered = 1;
   for (const std::size_t part : {1u, 2u, 4u}) {
     const auto few = [part](const Scene& s, std::uint64_t seed) {
@@ -203,6 +220,7 @@ TEST(IrradianceFailures, FewRecords) {
     EXPECT_LE(error.rms, kRms) << told(error);
     EXPECT_LT(error.covered, covered) << told(error);
     covered = error.covered;
+    tell_failure("few records", "on", percent(error.rms, "%.2f %%") + " RMS with a quarter of the records");
   }
 }
 
@@ -230,8 +248,11 @@ TEST(IrradianceFailures, LightThatMoves) {
     }
     return std::sqrt(squares / count);
   };
-  EXPECT_LE(flicker(0), kRms);
-  EXPECT_GT(flicker(100), 1.5 * kRms);
+  const double same_seed = flicker(0), other_seeds = flicker(100);
+  tell_failure("light that moves", "off", percent(other_seeds, "%.2f %%") + " RMS from frame to frame");
+  tell_failure("light that moves", "on", percent(same_seed, "%.2f %%") + " RMS from frame to frame");
+  EXPECT_LE(same_seed, kRms);
+  EXPECT_GT(other_seeds, 1.5 * kRms);
 }
 
 // Catalogue G7: a spot of 2 degrees on the ceiling of a room of 5 m is all that shines on the floor. Hardly a path finds it, of a
@@ -264,6 +285,10 @@ TEST(IrradianceFailures, G7_SmallBrightSpotIsNotClaimed) {
     }
     EXPECT_GT(std::sqrt(squares), 2 * kGoal);
     EXPECT_LT(*result.summary.error_bias, kGoal);
+    tell_failure("small bright spot", "off",
+                 "true error " + percent(std::sqrt(squares), "%.0f %%") + ", by interpolation " +
+                     percent(*result.summary.error_bias, "%.0f %%"));
+    tell_failure("small bright spot", "on", percent(kGoal, "%.0f %%") + " is not claimed");
     std::atomic<bool> enough{false};
     const auto look = [&](const TimelinePoint& now) {
       if (now.error_bound) {

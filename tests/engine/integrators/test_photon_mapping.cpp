@@ -9,6 +9,7 @@
 #include "integrators/photon/density_kernel.h"
 #include "integrators/photon_scenes.h"
 #include "support/error.h"
+#include "support/failure_row.h"
 #include "worker/frame_renderer.h"
 
 namespace fluxfarm {
@@ -18,9 +19,11 @@ using testing::kMaxZ;
 using testing::kNever;
 using testing::kTwinZ;
 using testing::Measurement;
+using testing::percent;
 using testing::replicated;
 using testing::room_with_balls;
 using testing::SceneBuilder;
+using testing::tell_failure;
 
 FrameResult render(const Scene& scene, const Goal& goal, std::uint64_t seed, int threads = 2, int tile = 64) {
   const PixelRect frame{0, 0, scene.film().width, scene.film().height};
@@ -110,14 +113,16 @@ TEST(PhotonMapping, Fails44_EdgesCornersAndBoxesAreRight) {
     builder.look({at_x + 0.2, 0.6, at_z + 0.4}, {at_x, 0, at_z}).max_depth(3);
     return mean_radiance(with(builder, false, 1 << 13), 16);
   };
-  for (const auto& [x, z, box, unguarded] :
-       {std::tuple{0.002f, 0.4f, false, 0.5}, {0.002f, 0.002f, false, 0.25}, {0.498f, 0.3f, true, 0.5}}) {
+  for (const auto& [key, x, z, box, unguarded] : {std::tuple{"edge of a plate", 0.002f, 0.4f, false, 0.5},
+                                                  {"corner of a plate", 0.002f, 0.002f, false, 0.25},
+                                                  {"crease", 0.498f, 0.3f, true, 0.5}}) {
     const double distance_squared = 6.25 + static_cast<double>(x * x + z * z);
     const double expected = kAlbedo / M_PI * kReflectance * 2.5 / std::pow(distance_squared, 1.5);
     const Measurement m = seen(x, z, box);
     EXPECT_NEAR(m.mean, expected, 0.03 * expected + kMaxZ * m.standard_error) << x << " " << z;
     EXPECT_LT(m.standard_error, 0.05 * expected);
     EXPECT_GT(m.z(unguarded * expected), kTwinZ) << "unguarded";
+    tell_failure(key, "on", percent(m.mean / expected - 1));
   }
 }
 
@@ -135,7 +140,9 @@ TEST(PhotonMapping, Fails44_NoLightLeaksUnderAThinWall) {
   };
   for (const bool final_gather : {true, false}) {
     const double lit = seen(0.02, final_gather);
-    EXPECT_LT(std::fabs(seen(-0.02, final_gather)), 1e-3 * lit) << final_gather;
+    const double dark = std::fabs(seen(-0.02, final_gather));
+    EXPECT_LT(dark, 1e-3 * lit) << final_gather;
+    tell_failure("thin wall over a floor", "on", percent(dark / lit) + " of the lit side");
     // Twin: the same photons without the guard.
     const Scene scene(room.description(), 1);
     const PhotonMap map(testing::shoot(scene, {.photons = 1 << 13, .seed = 1, .kinds = PhotonKind::kIndirect}).photons, 2);
@@ -145,6 +152,35 @@ TEST(PhotonMapping, Fails44_NoLightLeaksUnderAThinWall) {
     const Rgb leaked = estimate_by_nearest(map, patch, 64, radius, EpanechnikovKernel{}, nearest).value * (0.5f / kPi);
     EXPECT_GT(static_cast<double>(leaked.g), 0.05 * lit);
   }
+}
+
+// A floor of teeth of 45 degrees, much smaller than the disks of photons, under a lamp.
+TEST(PhotonMapping, Fails44_SawTeethAreAsBrightAsPathsSeeThem) {
+  SceneBuilder builder;
+  MeshDescription teeth;
+  constexpr int kTeeth = 200;
+  for (int i = 0; i <= 2 * kTeeth; ++i) {
+    const float x = -1 + static_cast<float>(i) / kTeeth, y = -1 + (i % 2 == 1 ? 1.0f / kTeeth : 0.0f);
+    for (const float z : {-1.0f, 1.0f}) teeth.positions.push_back({x, y, z});
+  }
+  for (std::uint32_t i = 0; i < 2 * kTeeth; ++i) {
+    for (const std::uint32_t corner : {0u, 1u, 2u, 2u, 1u, 3u}) teeth.indices.push_back(2 * i + corner);
+  }
+  builder.shape(testing::cube(Transform()), builder.diffuse(0.6f), 0, true);
+  builder.shape(teeth, builder.diffuse(0.6f));
+  builder.lamp_down(0, 0.99f, 0, 0.5f, 0.5f, builder.diffuse(0), 5);
+  builder.look({0, 0.2, 0.3}, {0, -1, 0}).max_depth(4);
+  const SceneDescription description = with(builder, true, 1 << 13);
+  const Scene scene(description, 1);
+  const auto path = make_integrator("path", scene);
+  const Measurement expected = replicated([&](std::uint64_t seed) {
+    const PixelRect frame{0, 0, scene.film().width, scene.film().height};
+    return render_frame(scene, *path, {frame, 64, 2, seed, {4096, {}, {}}}, kNever).summary.mean[1];
+  });
+  const Measurement found = mean_radiance(description, 64);
+  tell_failure("saw teeth", "on", percent(found.mean / expected.mean - 1));
+  EXPECT_NEAR(found.mean, expected.mean, 0.02 * expected.mean + kMaxZ * std::hypot(found.standard_error, expected.standard_error));
+  EXPECT_LT(std::hypot(found.standard_error, expected.standard_error), 0.01 * expected.mean);
 }
 
 // A goal below the blur ends without a claim, and says what to do; one above it is met.
@@ -158,6 +194,8 @@ TEST(PhotonMapping, BlurThatNoSampleTakesAwayIsNotClaimed) {
   EXPECT_NE(fine.warnings[0].find("blurs the picture"), std::string::npos) << fine.warnings[0];
   EXPECT_NE(fine.warnings[0].find("photon-progressive"), std::string::npos);
   EXPECT_GT(*fine.timeline.back().error_bound, 0.03);
+  tell_failure("edge of a shadow", "off", "error.bias " + percent(*fine.summary.error_bias));
+  tell_failure("edge of a shadow", "on", "3 % is not claimed: \"" + fine.warnings[0] + "\"");
   EXPECT_TRUE(render(scene, {{}, {}, 0.5}, 1).warnings.empty());
 }
 
