@@ -1,11 +1,11 @@
 // The pilot of "auto": tries the methods that may suit a scene on the same few tiles, and takes the one that reaches the goal with
 // the least work.
 //
-// All take the same samples there, so that chance weighs on all alike. A method is tried only where it may gain more than its trial
-// costs. The choice depends on the scene, the crop, the seed and the goal alone.
+// All take the same samples there, so that chance weighs on all alike, and the longer the more is at stake. A method is tried only
+// where it may gain more than its trial costs. The choice depends on the scene, the crop, the seed and the goal alone.
 //
-// Paths may not have met a caustic that photons see. What it would add to their noise follows from its brightness and that of the
-// lamps: a path that finds it brings back about what a lamp sends, so seldom that the mean is right.
+// Paths may not have met light that mirrors and gloss throw, which photons carry. What it will add to their noise is told by the
+// side of the light (integrators/audit/light_audit.h), or by the caustics that photons see.
 #pragma once
 
 #include <atomic>
