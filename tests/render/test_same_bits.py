@@ -14,7 +14,7 @@ from farm import SCENE, SEED, SIDE, SPP, Farm
 # What "auto" is to choose: scene, goal, method.
 AUTO = [
     ("cornell", {"rel_error": 0.06}, "irradiance-cache"),
-    ("cornell-glass", {"spp": 40}, "photon-progressive"),
+    ("cornell-glass", {"spp": 16}, "irradiance-cache"),
 ]
 
 
