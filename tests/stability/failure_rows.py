@@ -72,6 +72,14 @@ TESTED = [
     of_cache("light that moves", "flicker", "the same seed in each frame"),
     Failure("G7", "small bright spot", "irradiance-cache", "records miss it", "not claimed", ANY),
     Failure("C8", "caustic seen through glass", "path", "-100 %"),
+    Failure(
+        "C8",
+        "caustic through water, seen through it",
+        "path",
+        "hardly a path finds it",
+        "not claimed",
+        "progressive photons, in `water-caustic`",
+    ),
     Failure("C9", "growing roughness", "photon-progressive", "a step where photons begin"),
     *(
         Failure("4.9", f"rare event, 1 in {one_in}", "all", predicted, auto=ANY)

@@ -30,10 +30,6 @@ constexpr double kFewCarriers = 64;
 // where later samples find brighter paths, it goes down to 0.
 constexpr double kSlowestFall = 1.0, kFastestFall = 1.3;
 
-// Beyond so many samples a pixel no tile stays open because the audit doubts it, or for the method's bias (a choice): neither is
-// worth a wait without an end.
-constexpr std::uint32_t kMostForDoubt = 4096;
-
 struct TileError {
   std::uint32_t samples = 0;  // of each pixel
   ErrorBound cells;

@@ -32,6 +32,10 @@ inline constexpr int kErrorTile = 32;
 // Two samples in each replicate: with fewer, their spread says too little.
 inline constexpr std::uint32_t kFirstRound = 16;
 
+// Beyond so many samples a pixel no tile stays open because the audit doubts it, or for the method's bias (a choice): neither is
+// worth a wait without an end.
+inline constexpr std::uint32_t kMostForDoubt = 4096;
+
 struct ErrorGoal {
   double rel_error = 0;                      // sqrt(relMSE)
   std::uint32_t most_samples = 0xffffffffu;  // per pixel

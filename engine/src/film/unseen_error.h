@@ -5,6 +5,10 @@
 // x / (2 (c + sqrt(c^2 + 1e-2))) and never above 1. The bound lays m out where that costs most: on the darkest pixels first, on
 // each until its share is 1 (docs/theory.md). The error is the root of the mean of that over the picture: an upper bound, like that
 // of the noise.
+//
+// In and through smooth surfaces the audit sees nothing. There, light that was scattered sharply is taken to be the part that it is
+// in the whole scene: it makes a noise that is known (LightAudit::rare_brightness), and what the samples do not show of it they
+// have not met.
 #pragma once
 
 #include <cstdint>
@@ -18,7 +22,8 @@ namespace fluxfarm {
 
 struct UnseenError {
   double error = 0;                     // bound of sqrt(relMSE) by missing light; 0: nothing was found missing
-  double unreachable_error = 0;         // the part of it that no sample can mend
+  double unreachable_error = 0;         // the part of it that no sample can mend, or only far too many
+  double rare_error = 0;                // the part of it by light behind smooth surfaces that paths may find
   double energy = 0;                    // share of the picture's light that is missing, as estimated
   std::vector<std::uint32_t> doubtful;  // cells where more samples may find what is missing, rising
 };

@@ -39,6 +39,38 @@ TEST(AuditOutcome, KeepsABulbFromBeingClaimed) {
   testing::tell_failure("a point light in glass", "off", "without the audit 10 % of a black picture is claimed");
 }
 
+// A pool: what a small lamp throws through the water is seen through it, where the audit is blind, and hardly a path finds it.
+TEST(AuditOutcome, KeepsLightThroughWaterSeenThroughWaterFromBeingClaimed) {
+  SceneBuilder builder;
+  builder.floor(0, 3, builder.diffuse(0.5f));
+  builder.shape(testing::cube(Transform::translate(0, 0.55, 0) * Transform::scale(3, 0.05, 3)),
+                builder.add(DielectricDescription{}));
+  builder.lamp_down(0, 3, 0, 1e-3f, 1e-3f, builder.diffuse(0), 4e7f);
+  builder.look({0, 2.5, 1}, {0, 0, 0});
+  const Scene scene(wide_view(builder, 40), 1);
+  const auto run = [&](const char* method) {
+    const auto integrator = make_integrator(method, scene);
+    return render_frame(scene, *integrator, {kFrame, 64, 2, 1, {{}, {}, 0.1}}, kNever);
+  };
+  const FrameResult by_paths = run("path");
+  ASSERT_EQ(by_paths.warnings.size(), 1u);
+  EXPECT_NE(by_paths.warnings[0].find("seen in mirrors or through glass: ask for integrator photon-progressive"), std::string::npos)
+      << by_paths.warnings[0];
+  EXPECT_GT(by_paths.error_unseen.value(), 0.1);
+  EXPECT_LT(by_paths.summary.mean_samples, 100) << "no sample can save it";
+  // Photons find it, and claim.
+  const FrameResult by_photons = run("photon-progressive");
+  EXPECT_TRUE(by_photons.warnings.empty());
+  EXPECT_GT(by_photons.summary.mean[1], 2 * by_paths.summary.mean[1]);
+  // Twin: an audit that says nothing of it lets the picture of the paths be claimed.
+  LightAudit audit = audit_light(scene, kFrame, 1, 1, kNever);
+  EXPECT_GT(audit.rare_share, 0.5);
+  audit.rare_share = 0;
+  EXPECT_LT(look_at(by_paths.film, {0.1}, 1, &audit).bound, 0.1);
+  testing::tell_failure("caustic through water, seen through it", "off", "10 % of a picture without it is claimed");
+  testing::tell_failure("caustic through water, seen through it", "on", "\"" + by_paths.warnings[0] + "\"");
+}
+
 // The bulb of a point light stands in that room, too: every field of every cell has something to say.
 SceneBuilder room_with_a_bulb() {
   SceneBuilder builder = room(DielectricDescription{});

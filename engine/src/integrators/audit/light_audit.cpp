@@ -22,6 +22,8 @@ constexpr std::int64_t kPixelsToAParticle = 4;
 constexpr std::int64_t kLeastParticles = 1 << 14, kMostParticles = 1 << 22;
 // The sums of so many groups of particles are added in order, whatever thread made them.
 constexpr std::uint32_t kGroups = 64;
+// A surface on which such light falls scatters so much of it to the camera (a choice).
+constexpr double kLeftBySurface = 0.5;
 // Side of the squares of pixels in each of which one probe looks for smooth surfaces.
 constexpr int kProbeSide = 4;
 
@@ -69,6 +71,8 @@ class GroupSums {
   void add(const ParticleTrace& trace, const Grid& grid) {
     arrived += trace.arrived;
     arrived_unreachable += trace.arrived_unreachable;
+    arrived_rare += trace.arrived_rare;
+    arrived_bright += trace.arrived_bright;
     own_.clear();
     for (const Splat& splat : trace.splats) {
       const std::optional<std::size_t> cell = grid.at(splat.x, splat.y);
@@ -89,7 +93,7 @@ class GroupSums {
   }
 
   std::vector<CellSums> cells;
-  double arrived = 0, arrived_unreachable = 0;
+  double arrived = 0, arrived_unreachable = 0, arrived_rare = 0, arrived_bright = 0;
 
  private:
   struct Own {
@@ -183,10 +187,12 @@ LightAudit audit_light(const Scene& scene, PixelRect crop, std::uint64_t seed, i
   const Task task{scene, crop, seed, threads, cancelled, finds_caustics};
   const std::int64_t pixels = crop.pixels();
   const auto particles = static_cast<std::uint32_t>(std::clamp(pixels / kPixelsToAParticle, kLeastParticles, kMostParticles));
-  double arrived = 0, arrived_unreachable = 0;
+  double arrived = 0, arrived_unreachable = 0, arrived_rare = 0, arrived_bright = 0;
   for (const GroupSums& group : trace_particles(task, particles)) {
     arrived += group.arrived;
     arrived_unreachable += group.arrived_unreachable;
+    arrived_rare += group.arrived_rare;
+    arrived_bright += group.arrived_bright;
     for (std::size_t i = 0; i < rects.size(); ++i) {
       const double scale = 1 / (static_cast<double>(particles) * static_cast<double>(rects[i].pixels()));
       audit.cells[i].radiance += group.cells[i].radiance * scale;
@@ -195,10 +201,12 @@ LightAudit audit_light(const Scene& scene, PixelRect crop, std::uint64_t seed, i
       audit.cells[i].sharp_square += group.cells[i].sharp_squares * scale;
     }
   }
-  if (arrived_unreachable > 0) {
-    audit.unreachable_share = arrived_unreachable / arrived;
-    find_blind_shares(task, audit);
+  if (arrived_unreachable > 0) audit.unreachable_share = arrived_unreachable / arrived;
+  if (arrived_rare > 0 && !finds_caustics && scene.census().delta_lobes) {
+    audit.rare_share = arrived_rare / arrived;
+    audit.rare_brightness = kLeftBySurface * arrived_bright / arrived_rare;
   }
+  if (audit.unreachable_share > 0 || audit.rare_share > 0) find_blind_shares(task, audit);
   return audit;
 }
 

@@ -104,6 +104,11 @@ void ParticleTracer::trace(std::uint32_t index, RayQueries& queries, ParticleTra
       const auto arriving = static_cast<double>(mean(particle.flux));
       trace.arrived += arriving;
       if (particle.unreachable) trace.arrived_unreachable += arriving;
+      if (const auto found = static_cast<double>(particle.found.radiance()); found > 0) {
+        const double rare = arriving * static_cast<double>(particle.found.by_photons());
+        trace.arrived_rare += rare;
+        trace.arrived_bright += rare * found;
+      }
       connect(vertex, particle, queries, trace);
     }
 

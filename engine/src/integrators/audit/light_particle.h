@@ -27,10 +27,12 @@ struct ParticleTrace {
   // Flux that arrived at surfaces with a continuous lobe, mean over R, G, B, at all bounces; and of it what no path from the camera
   // can find there. W
   double arrived = 0, arrived_unreachable = 0;
+  // Of it what was scattered sharply and paths may find, W, and that times the radiance which they find it by.
+  double arrived_rare = 0, arrived_bright = 0;
 
   void clear() {
     splats.clear();
-    arrived = arrived_unreachable = 0;
+    arrived = arrived_unreachable = arrived_rare = arrived_bright = 0;
   }
 };
 
