@@ -56,7 +56,7 @@ SCENES = {
     "veach-bidir": Subject(OUTSIDE / "veach-bidir" / "scene.xml", "64x36", "32x18"),
     "veach-ajar": Subject(OUTSIDE / "veach-ajar" / "scene.xml", "64x36", "32x18"),
     "water-caustic": Subject(OUTSIDE / "water-caustic" / "scene.xml", "96x54", "64x36"),
-    "glass-of-milk": Subject(OUTSIDE / "glass-of-milk" / "scene.xml", "64x64", "32x32"),
+    "glass-of-milk": Subject(OUTSIDE / "glass-of-milk" / "scene.xml", "32x32", "16x16"),
     "gltf-cornell-glass": Subject(OUTSIDE / "gltf-cornell-glass" / "scene.glb", "128x128", "64x64"),
 }
 

@@ -84,6 +84,10 @@ class Integrator {
   virtual std::shared_ptr<const PreparedPass> prepare_pass(std::uint64_t seed, SampleRange samples, int threads,
                                                            const std::atomic<bool>& cancelled) const;
 
+  // Where preparing this pass makes something anew, such as the next level of a cache, about how many times the rays it takes that
+  // the last such pass took, or the first one; else 0.
+  virtual double growth_at(SampleRange) const { return 0; }
+
   // Estimates the radiance of each sample, in the order given: whole blocks of pixels one after another, in each the samples of
   // one pixel together, equally many of all (integrators/pixel_blocks.h). `pass` comes from prepare_pass() of this seed and these
   // samples. The results of a block depend on the scene, the seed and the block's samples alone. Safe to call from many threads,

@@ -55,18 +55,34 @@ FrameResult render_frame(const Scene& scene, const Integrator& integrator, const
   const Clock::time_point start = Clock::now();
   std::optional<LightAudit> audit;
   if (goal.rel_error) {
-    audit = audit_light(scene, settings.crop, settings.seed, settings.threads, cancelled, integrator.finds_caustics());
+    const LightAudit* const made = known.audit(settings.seed);
+    audit =
+        made ? *made : audit_light(scene, settings.crop, settings.seed, settings.threads, cancelled, integrator.finds_caustics());
   }
+  std::uint64_t rays_prepared = 0;  // here, not by the pilot
+  double level_rays = 0;            // that preparing what grew last took
+  // Time that so many rays take, at the rate so far.
+  const auto seconds_of = [&](double rays) {
+    double traced = static_cast<double>(rays_prepared);
+    for (const RayQueries& query : queries) traced += static_cast<double>(query.rays());
+    return rays > 0 ? rays * seconds_since(start) / traced : 0;
+  };
   std::optional<Round> round = begin(settings, tiles.size());
   for (int number = 1; round; ++number) {
     std::optional<ErrorLook> look;
     for (std::uint32_t done = round->samples.begin; done < round->samples.end;) {
       SampleRange pass = next_pass(done, round->samples.end);
-      if (goal.seconds && !result.timeline.empty() && !cut_to_time(pass, *goal.seconds, result.timeline.back())) break;
+      const double growth = integrator.growth_at(pass);
+      if (goal.seconds && !result.timeline.empty()) {
+        const double left_for_it = *goal.seconds - seconds_of(growth * level_rays);
+        if (!cut_to_time(pass, left_for_it, result.timeline.back())) break;
+      }
       const std::optional<std::shared_ptr<const PreparedPass>> known_pass = known.pass(settings.seed, pass);
       const std::shared_ptr<const PreparedPass> prepared =
           known_pass ? *known_pass : integrator.prepare_pass(settings.seed, pass, settings.threads, cancelled);
       if (prepared) result.rays += prepared->rays();
+      if (prepared && !known_pass) rays_prepared += prepared->rays();
+      if (prepared && (done == 0 || growth > 0)) level_rays = static_cast<double>(prepared->rays());
       parallel_for(round->tiles.size(), settings.threads, [&](std::size_t index, int thread) {
         const PixelRect rect = tiles[round->tiles[index]];
         // Tiles are disjoint: threads write to different pixels of the film, and only the counter is shared.

@@ -39,11 +39,13 @@ std::shared_ptr<const LoadedScene> load_scene(const LoadSceneRequest& request, i
   info.height = film.height;
   info.scene_spp = description.samples_per_pixel;
   info.crop = film.crop_width > 0 ? PixelRect{film.crop_x, film.crop_y, film.crop_width, film.crop_height} : full;
-  Method method = make_method(request.integrator, loaded->scene, settled(request.picture, info), threads, cancelled);
+  const Picture picture = settled(request.picture, info);
+  Method method = make_method(request.integrator, loaded->scene, picture, threads, cancelled);
   info.integrator = method.integrator->name();
   info.warnings = loaded->scene.warnings();
   info.plan_json = plan_json(loaded->scene, *method.integrator, method.choice ? &*method.choice : nullptr);
   loaded->integrator = std::move(method.integrator);
+  if (const LightAudit* audit = method.known.audit(picture.seed)) loaded->audits->keep(picture.crop, picture.seed, *audit);
   loaded->pilot->keep(std::move(method.known));
   info.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return loaded;

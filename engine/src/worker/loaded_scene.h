@@ -22,6 +22,11 @@ class AuditMemory {
   // As audit_light(); one that was cancelled is not kept. Safe to call from many threads; they wait for each other.
   LightAudit find(const Scene& scene, const Integrator& integrator, PixelRect crop, std::uint64_t seed, int threads,
                   const std::atomic<bool>& cancelled);
+  // Keeps one that was made elsewhere.
+  void keep(PixelRect crop, std::uint64_t seed, const LightAudit& audit) {
+    const std::lock_guard lock(mutex_);
+    made_ = Made{crop, seed, audit};
+  }
 
  private:
   struct Made {

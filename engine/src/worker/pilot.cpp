@@ -104,9 +104,9 @@ class PilotRun {
  public:
   PilotRun(const PilotTask& task, const Goal& goal) : task_(task), goal_(goal) {}
 
-  void run(Contender& path, Contender& photons, Contender& cache) const {
+  void run(Contender& path, Contender& photons, Contender& cache, const LightAudit& audit) const {
     try_out(path);
-    const double sharp = audited_square();
+    const double sharp = sharp_square(audit, task_.crop);
     path.figures->unmet_noise = std::max(sharp - settled_noise(*path.figures), 0.0);
     if (photons.integrator && !photons_may_gain(path, sharp)) {
       photons.reason = "light from mirrors and gloss makes too little of the noise for the shooting of photons";
@@ -172,11 +172,6 @@ class PilotRun {
                          .work_ahead = in_levels ? ray * trial.rays_ahead() : 0,
                          .in_levels = in_levels,
                          .seconds_per_work = trial.seconds() / (ray * trial.rays())};
-  }
-
-  double audited_square() const {
-    const LightAudit audit = audit_light(task_.scene, task_.crop, task_.seed, task_.threads, task_.cancelled, true);
-    return sharp_square(audit, task_.crop);
   }
 
   // What light for photons adds to the noise of path tracing, beyond what it has met of it: by the side of the light, which does
@@ -261,8 +256,10 @@ Method run_pilot(const Scene& scene, const Picture& picture, int threads, const 
   contenders.push_back(contender("irradiance-cache", scene, "no surface is diffuse"));
   const PilotTask task{scene, picture.crop, pilot_tiles(picture.crop), picture.seed, threads, cancelled};
   // Alone, path tracing needs no trial; towards an error goal its samples are the picture's, so that a forecast costs nothing.
+  std::optional<LightAudit> audit;
   if (contenders[1].integrator || contenders[2].integrator || picture.goal.rel_error) {
-    PilotRun(task, picture.goal).run(contenders[0], contenders[1], contenders[2]);
+    audit = audit_light(scene, picture.crop, picture.seed, threads, cancelled, true);
+    PilotRun(task, picture.goal).run(contenders[0], contenders[1], contenders[2], *audit);
   }
   MethodChoice choice;
   choice.goal = picture.goal;
@@ -278,6 +275,9 @@ Method run_pilot(const Scene& scene, const Picture& picture, int threads, const 
   method.integrator = std::move(chosen.integrator);
   // Tiles of other goals are cut otherwise.
   if (chosen.trial) method.known = chosen.trial->take_samples(picture.goal.rel_error.has_value());
+  // Of paths the audit asks more where there are mirrors or glass.
+  const bool same_audit = method.integrator->finds_caustics() || !scene.census().delta_lobes;
+  if (chosen.trial && audit && same_audit) method.known.keep(*std::move(audit));
   choice.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   const MethodCandidate& taken = *std::ranges::find(choice.candidates, choice.method, &MethodCandidate::method);
   // Towards an error goal the pilot's samples by the chosen method are a part of both.

@@ -5,7 +5,9 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <chrono>
 #include <filesystem>
+#include <thread>
 
 #include "film/tile_grid.h"
 #include "support/error.h"
@@ -76,6 +78,46 @@ TEST(FrameRenderer, StopsNearItsTimeAndReportsEachPass) {
   EXPECT_LT(result.seconds, 1.0);
   EXPECT_EQ(static_cast<std::size_t>(passes), result.timeline.size());
   EXPECT_EQ(result.summary.max_samples, result.timeline.back().spp);
+}
+
+// Takes 0.2 s and 1000 rays before its first sample, and `growth` times as many before its fifth.
+class WithLevels final : public Integrator {
+ public:
+  explicit WithLevels(double growth) : growth_(growth) {}
+  const char* name() const override { return "with levels"; }
+  void prepare(const Scene&) override {}
+  double growth_at(SampleRange samples) const override { return samples.begin == 4 ? growth_ : 0; }
+  std::shared_ptr<const PreparedPass> prepare_pass(std::uint64_t, SampleRange samples, int,
+                                                   const std::atomic<bool>&) const override {
+    struct Rays : PreparedPass {
+      explicit Rays(std::uint64_t traced) : count(traced) {}
+      std::uint64_t rays() const override { return count; }
+      std::uint64_t count;
+    };
+    if (samples.begin == 0) std::this_thread::sleep_for(std::chrono::milliseconds(200));
+    second_level |= samples.begin == 4;
+    return std::make_shared<Rays>(samples.begin == 0 ? 1000 : 0);
+  }
+  void radiance(std::span<const CameraSample>, std::uint64_t, const PreparedPass*, std::span<SampleResult> results,
+                RayQueries&) const override {
+    std::ranges::fill(results, SampleResult{});
+  }
+
+  mutable bool second_level = false;
+
+ private:
+  double growth_;
+};
+
+TEST(FrameRenderer, BeginsNoLevelThatDoesNotFitIntoItsTime) {
+  const Scene scene(small_scene(), 1);
+  const std::atomic<bool> never{false};
+  for (const auto& [growth, fits] : {std::pair{0.1, true}, {4.0, false}}) {
+    const WithLevels integrator(growth);
+    const FrameResult result = render_frame(scene, integrator, {{0, 0, 33, 21}, 16, 1, 5, {{}, 0.8, {}}}, never);
+    EXPECT_EQ(integrator.second_level, fits) << growth;
+    EXPECT_EQ(result.summary.max_samples > 4, fits) << growth;
+  }
 }
 
 TEST(FrameRenderer, ErrorGoalIsReachedByTheBoundAndNotBefore) {

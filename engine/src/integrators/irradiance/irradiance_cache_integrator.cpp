@@ -100,6 +100,11 @@ std::shared_ptr<const PreparedPass> IrradianceCacheIntegrator::prepare_pass(std:
   return std::make_shared<CachedPass>(std::move(made.cache), std::move(caustics), made.rays);
 }
 
+double IrradianceCacheIntegrator::growth_at(SampleRange samples) const {
+  const bool next = !paths_ && samples.begin > 0 && samples.begin == cache_level(samples).begin;
+  return next ? kNextLevelGrowth : 0;
+}
+
 void IrradianceCacheIntegrator::radiance(std::span<const CameraSample> samples, std::uint64_t seed, const PreparedPass* pass,
                                          std::span<SampleResult> results, RayQueries& queries) const {
   if (paths_) return paths_->radiance(samples, seed, pass, results, queries);

@@ -38,6 +38,7 @@ class IrradianceCacheIntegrator final : public Integrator {
   void prepare(const Scene& scene) override;
   std::shared_ptr<const PreparedPass> prepare_pass(std::uint64_t seed, SampleRange samples, int threads,
                                                    const std::atomic<bool>& cancelled) const override;
+  double growth_at(SampleRange samples) const override;
   void radiance(std::span<const CameraSample> samples, std::uint64_t seed, const PreparedPass* pass,
                 std::span<SampleResult> results, RayQueries& queries) const override;
 

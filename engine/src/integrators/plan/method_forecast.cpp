@@ -15,10 +15,10 @@ namespace {
 constexpr double kFirstFall = 1.25, kLaterFall = 1.1, kSettled = 128, kBlurFall = 2.0 / 3;
 
 // What the bound of an error goal and rounds that double samples add: a picture is done when its error is so much below its goal.
-constexpr double kMargin = 0.85;
+constexpr double kMargin = 0.8;
 
-// Of the next level of a cache over the one before: the rays that it takes, first and later, and the squared bias that it leaves.
-constexpr double kSecondLevel = 1.7, kNextLevel = 2.25, kBiasLeft = 1 / 3.7;
+// Of the next level of a cache over the one before: the squared bias that it leaves.
+constexpr double kBiasLeft = 1 / 3.7;
 
 // Rays of path tracing that a second is taken for: two threads trace 6 to 14 millions in our scenes.
 constexpr double kWorkOfSecond = 1e7;
@@ -33,11 +33,11 @@ struct Levels {
 
 Levels levels(double samples) {
   Levels all{1, 1};
-  double next = kSecondLevel;
+  double next = kSecondLevelGrowth;
   for (double end = kFirstCacheLevel; samples > end; end *= 8) {
     all.work += next;
     all.bias *= kBiasLeft;
-    next *= kNextLevel;
+    next *= kNextLevelGrowth;
   }
   return all;
 }
