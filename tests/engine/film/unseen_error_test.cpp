@@ -161,9 +161,34 @@ TEST(UnseenError, ForeseesTheSamplesOfDoubtfulCells) {
 }
 
 // A scene that cannot be audited: a claim says what it rests on, and none is made where paths may never find the light.
+// A fifth of the light comes by rare paths, and the left cell is seen through glass: with it its radiance would be 0.5 / 0.8.
+TEST(UnseenError, RareLightBehindGlassCountsUntilTheSamplesShowIt) {
+  const Film calm = picture([](int) { return 0.5; }, 0), noisy = picture([](int) { return 0.5; }, 0.5);
+  const double missing = 0.2 / (4 * 0.8), whole = 0.5 / 0.8;
+  LightAudit audit = audit_of({0.5, 1e-4, 0, 1}, {0.5, 1e-4, 0, 0});
+  audit.rare_share = 0.2;
+  audit.rare_brightness = 1;
+  const double left = 0.2 * whole / (whole * whole + 1e-2) / 4096;  // after as many samples as doubt is worth
+  const UnseenError doubt = unseen_error(calm, audit, 1);
+  EXPECT_NEAR(doubt.error, std::sqrt(missing / 2), 1e-6);
+  EXPECT_NEAR(doubt.rare_error, doubt.error, 1e-6);
+  EXPECT_NEAR(doubt.unreachable_error, std::sqrt(left / 2), 1e-6);
+  EXPECT_EQ(doubt.doubtful, std::vector<std::uint32_t>{0});
+  audit.rare_brightness = 1e6;
+  const UnseenError hopeless = unseen_error(calm, audit, 1);
+  EXPECT_NEAR(hopeless.unreachable_error, hopeless.error, 1e-6);
+  EXPECT_NE(unseen_warning(hopeless, 0.05).find("ask for integrator photon-progressive"), std::string::npos);
+  // Twin: samples that differ so much have met it.
+  const UnseenError met = unseen_error(noisy, audit, 1);
+  EXPECT_EQ(met.error, 0);
+  EXPECT_TRUE(met.doubtful.empty());
+}
+
 TEST(UnseenError, IsToldWhereItIsNotKnown) {
   const Film film = picture([](int) { return 0.5; }, 0.001);
-  const LightAudit blind{{}, 0, LightAudit::kNotPossible}, lost{{}, 0, LightAudit::kNotPossibleWithUnreachable};
+  LightAudit blind, lost;
+  blind.outcome = LightAudit::kNotPossible;
+  lost.outcome = LightAudit::kNotPossibleWithUnreachable;
   const ErrorLook claimed = look_at(film, {0.05}, 1, &blind);
   EXPECT_LE(claimed.bound, 0.05);
   EXPECT_FALSE(claimed.unseen.has_value());
