@@ -45,10 +45,10 @@ RUNS = {
 def profile(scene: Path, method: str, folder: Path) -> tuple[dict[str, bool], set[str]]:
     """The parts of the plan, and the functions that ran."""
     calls, report = folder / "calls", folder / "report.json"
+    callgrind = ("valgrind", "--tool=callgrind", f"--callgrind-out-file={calls}")
     goal = ("--integrator", method, "--rel-error", "5", "--size", "16x16", "--threads", "1")
     subprocess.run(
-        ["valgrind", "--tool=callgrind", f"--callgrind-out-file={calls}"]
-        + [ENGINE, "render", scene, "-o", folder / "out.exr", "--report", report, *goal],
+        [*callgrind, ENGINE, "render", scene, "-o", folder / "out.exr", "--report", report, *goal],
         check=True,
         capture_output=True,
     )
