@@ -49,8 +49,7 @@ struct EmissionSample {
   bool delta = false;  // of a delta light: BSDF sampling from the other end cannot find it
   ApparentSize size = {};
   bool from_outside = false;  // has come through all that surrounds the scene
-                              // What goes along the ray, W sr^-1; of light from outside the irradiance across it, W m^-2.
-  Rgb intensity = {};
+  Rgb intensity = {};         // along the ray, W sr^-1; of light from outside the irradiance across it, W m^-2
 };
 
 class Emitter {
