@@ -14,6 +14,7 @@ from pathlib import Path
 import hard_scenes
 import numpy as np
 from failure_rows import HARD, METHODS, TESTED, Failure, HardScene, Row
+from kept_table import write
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "render"))
 
@@ -121,21 +122,11 @@ def rows() -> list[Row]:
     return table
 
 
-def page(table: list[Row]) -> str:
-    lines = [" | ".join(row.as_json().values()).replace("\n", " ") for row in table]
-    return HEAD + "".join(f"| {line} |\n" for line in lines)
-
-
-def write(table: list[Row], markdown: Path) -> None:
-    markdown.write_text(page(table))
-    markdown.with_suffix(".json").write_text(json.dumps([row.as_json() for row in table], indent=1) + "\n")
-
-
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("markdown", type=Path)
     target: Path = parser.parse_args().markdown
-    write(rows(), target)
+    write(HEAD, rows(), target)
 
 
 if __name__ == "__main__":

@@ -3,11 +3,11 @@
 `python stress_table.py docs/stability.md` writes the page from the full form, and the JSON beside it."""
 
 import argparse
-import json
 import tempfile
 from pathlib import Path
 
-from stress_judge import Judge, Row, rows
+from kept_table import write
+from stress_judge import Judge, rows
 
 FULL_SEEDS, FULL_SPP_FACTOR = 4, 4
 
@@ -27,22 +27,12 @@ of their places. Scenes are in `tests/stability/stress_scenes.py`, cases and tol
 """
 
 
-def page(table: list[Row]) -> str:
-    lines = [" | ".join(row.as_json().values()).replace("\n", " ") for row in table]
-    return HEAD + "".join(f"| {line} |\n" for line in lines)
-
-
-def write(table: list[Row], markdown: Path) -> None:
-    markdown.write_text(page(table))
-    markdown.with_suffix(".json").write_text(json.dumps([row.as_json() for row in table], indent=1) + "\n")
-
-
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("markdown", type=Path)
     target: Path = parser.parse_args().markdown
     with tempfile.TemporaryDirectory() as folder:
-        write(rows(Judge(Path(folder), FULL_SEEDS, FULL_SPP_FACTOR)), target)
+        write(HEAD, rows(Judge(Path(folder), FULL_SEEDS, FULL_SPP_FACTOR)), target)
 
 
 if __name__ == "__main__":

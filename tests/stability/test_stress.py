@@ -6,9 +6,10 @@ from pathlib import Path
 import pytest
 import stress_cases
 import stress_scenes
+from kept_table import page, write
 from stress_cases import CASES, LEAK, METHODS, Case
 from stress_judge import Judge, Row, rows
-from stress_table import FULL_SEEDS, FULL_SPP_FACTOR, page, write
+from stress_table import FULL_SEEDS, FULL_SPP_FACTOR, HEAD
 
 PAGE = Path(__file__).parents[2] / "docs" / "stability.md"
 
@@ -29,7 +30,7 @@ def test_stress_is_borne(case: Case, method: str, short: Judge) -> None:
 @pytest.mark.timeout(3600)
 def test_stress_is_borne_with_more_samples(tmp_path: Path) -> None:
     table = rows(Judge(tmp_path, FULL_SEEDS, FULL_SPP_FACTOR))
-    write(table, tmp_path / "stability.md")
+    write(HEAD, table, tmp_path / "stability.md")
     assert not [row for row in table if row.failed]
 
 
@@ -63,4 +64,4 @@ def test_the_page_has_every_case_and_method() -> None:
         (case.name, method) for case in CASES for method in METHODS
     ]
     assert not [row for row in table if row["verdict"].startswith("FAILS")]
-    assert PAGE.read_text() == page([Row(**row) for row in table])
+    assert PAGE.read_text() == page(HEAD, [Row(**row) for row in table])
