@@ -70,7 +70,7 @@ struct Contender {
   std::unique_ptr<Integrator> integrator;  // null: does not suit the scene
   std::string reason;                      // why
   std::optional<PilotTrial> trial;
-  double indirect = 0;  // part of its noise in the indirect layer
+  double indirect = 0;  // part of its noise by indirect light
   std::optional<MethodTrial> figures;
 };
 
@@ -116,7 +116,7 @@ class PilotRun {
     const Contender& last = photons.figures ? photons : path;
     if (cache.integrator && scene_pixels() > kMostPixelsOfACache) {
       cache.reason = "the frame has more than " + std::to_string(kMostPixelsOfACache) + " pixels";
-    } else if (cache.integrator && !(cache_may_gain(path) && cache_may_gain(last))) {
+    } else if (cache.integrator && !cache_may_gain(last, path)) {
       cache.reason = "indirect light makes " + percent(last.indirect) + " of the noise: not enough for the making of a cache";
     } else if (cache.integrator) {
       fits(cache);
@@ -193,14 +193,15 @@ class PilotRun {
     return cost_of(hoped) < cost_of(*path.figures);
   }
 
-  // Whether a cache that takes little and works well would cost less than that method.
-  bool cache_may_gain(const Contender& than) const {
-    MethodTrial hoped = *than.figures;
-    for (TileNoise& tile : hoped.noise) tile.share *= 1 - (1 - kHopedLeft) * than.indirect;
+  // Whether a cache that takes little and works well would cost less than both. It stands on the photons, if those were tried: of
+  // what paths have not met, their indirect layer says nothing.
+  bool cache_may_gain(const Contender& last, const Contender& path) const {
+    MethodTrial hoped = *last.figures;
+    for (TileNoise& tile : hoped.noise) tile.share *= 1 - (1 - kHopedLeft) * last.indirect;
     hoped.unmet_noise = 0;
     hoped.in_levels = true;
     hoped.work_ahead = kHopedAhead * hoped.work_per_sample;
-    return cost_of(hoped) < cost_of(*than.figures);
+    return cost_of(hoped) < std::min(cost_of(*last.figures), cost_of(*path.figures));
   }
 
   double cost_of(const MethodTrial& trial) const { return cost(forecast(trial, goal_), goal_); }

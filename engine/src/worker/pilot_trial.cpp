@@ -49,8 +49,14 @@ struct CellNoise {
   std::size_t tile;
   int pixels;
   double share;         // of relMSE
-  double indirect = 0;  // the part of it in the indirect layer
+  double indirect = 0;  // the part of it by indirect light
 };
+
+// Light that came by a diffuse surface before the last, as far as the layers tell: the specular one has all that is seen in mirrors
+// and through glass.
+Rgb indirect_light(const Film& film, int x, int y) {
+  return film.layer_mean(x, y, LightLayer::kIndirect) + film.layer_mean(x, y, LightLayer::kSpecular);
+}
 
 // Lessens the largest ones so that none has more noise than the largest of the others.
 void cap(std::vector<CellNoise>& cells) {
@@ -170,7 +176,7 @@ double indirect_share(const std::vector<Film>& half, const std::vector<Film>& al
   for (std::size_t i = 0; i < all.size(); ++i) {
     for (const PixelRect& rect : make_tiles(all[i].crop(), kCell)) {
       const double indirect = sum_over(rect, [&](int x, int y) {
-        const Rgb layer = all[i].layer_mean(x, y, LightLayer::kIndirect) - half[i].layer_mean(x, y, LightLayer::kIndirect);
+        const Rgb layer = indirect_light(all[i], x, y) - indirect_light(half[i], x, y);
         return relative({square(layer.r), square(layer.g), square(layer.b)}, all[i].estimate(x, y).mean);
       });
       const double share = sum_over(rect, [&](int x, int y) {

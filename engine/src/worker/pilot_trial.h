@@ -67,7 +67,8 @@ class PilotTrial {
   PilotSamples kept_;
 };
 
-// How much of the noise is in the indirect layer, by the difference of the first half of the samples, in `half`, and the second.
+// How much of the noise is by indirect light and what is seen in mirrors and through glass, by the difference of the first half of
+// the samples, in `half`, and the second.
 double indirect_share(const std::vector<Film>& half, const std::vector<Film>& all);
 
 }  // namespace fluxfarm

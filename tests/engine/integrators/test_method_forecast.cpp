@@ -111,6 +111,14 @@ TEST(MethodChoice, LightThatATrialDidNotMeetCounts) {
   EXPECT_EQ(choose({{}, {}, 0.05}, blind, trial(0.04, 1000)).method, "b");
 }
 
+// What is done by the first round at once, but only just, is not taken over what surely is for a little more.
+TEST(MethodChoice, TwiceTheNoiseCountsAsMuchAsWhatATrialShows) {
+  const MethodTrial hardly = trial(0.0015, 1000), surely = trial(0.0001, 1200);
+  const Goal goal{{}, {}, 0.05};
+  EXPECT_LT(forecast(hardly, goal).work, forecast(surely, goal).work);
+  EXPECT_EQ(choose(goal, hardly, surely).method, "b");
+}
+
 TEST(MethodChoice, AGoalOutOfReachIsNotTheCheapestOne) {
   MethodTrial never = trial(0.04, 1);
   never.unmet_noise = 1e9;

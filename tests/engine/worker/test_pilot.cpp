@@ -80,6 +80,14 @@ TEST(Pilot, CachesIrradianceOfAWhiteRoom) {
   EXPECT_EQ(candidate(method, "photon-progressive").reason, "no light reaches a surface by mirrors, glass or gloss");
 }
 
+// All light of the picture is in the specular layer, and as indirect as without the pane.
+TEST(Pilot, TriesACacheWhereTheRoomIsSeenThroughGlass) {
+  SceneBuilder builder = white_room();
+  builder.shape(cube(Transform::translate(0, 0, 1.2) * Transform::scale(1.4, 0.9, 0.02)), builder.add(DielectricDescription{1.5f}));
+  const Scene scene(in_frame(builder), 1);
+  EXPECT_TRUE(candidate(pilot(scene, kFivePercent), "irradiance-cache").trial);
+}
+
 TEST(Pilot, TracesPathsWhereNothingIsIndirectAndTriesNoCache) {
   const Scene scene(in_frame(lit_plane()), 1);
   const Method method = pilot(scene, kFivePercent);

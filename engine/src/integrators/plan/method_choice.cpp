@@ -1,6 +1,7 @@
 #include "integrators/plan/method_choice.h"
 
 #include <algorithm>
+#include <cmath>
 #include <sstream>
 
 #include "integrators/plan/method_forecast.h"
@@ -26,7 +27,8 @@ std::string what_for(const Goal& goal) {
 double cost(const MethodForecast& forecast, const Goal& goal) {
   const double rel_mse = forecast.error * forecast.error;
   if (goal.rel_error) {
-    return reaches(forecast, goal) ? forecast.work : forecast.work * rel_mse / (*goal.rel_error * *goal.rel_error);
+    const double work = std::sqrt(forecast.work * std::max(forecast.work_in_doubt, forecast.work));
+    return reaches(forecast, goal) ? work : work * rel_mse / (*goal.rel_error * *goal.rel_error);
   }
   return goal.seconds ? rel_mse : rel_mse * forecast.work;
 }

@@ -29,8 +29,9 @@ struct MethodChoice {
   double expected_seconds = 0;  // with those, until the goal
 };
 
-// What a method costs a goal: work until an error goal, and where that is out of reach so many times more as its relMSE is too
-// large; else relMSE, times the work where samples are given.
+// What a method costs a goal. An error goal: work until it, the geometric mean of what is foretold and of what it would be with
+// twice the noise, as few samples seldom tell all of it; and where the goal is out of reach so many times more as the relMSE is too
+// large. Else relMSE, times the work where samples are given.
 double cost(const MethodForecast& forecast, const Goal& goal);
 
 // Takes the cheapest candidate of those with a forecast, or the first one where none has: sets method and reason.

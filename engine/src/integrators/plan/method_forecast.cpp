@@ -67,6 +67,19 @@ MethodForecast forecast_spread(const MethodTrial& trial, double samples, double 
   return result;
 }
 
+// Until a goal in seconds or in error. Samples go up by tenths until the goal, or the time, is met.
+MethodForecast forecast_goal(const MethodTrial& trial, const Goal& goal) {
+  const double gain = goal.rel_error ? spread_gain(trial) : 1;
+  MethodForecast result = forecast_spread(trial, goal.rel_error ? kFirstRound : 1, 1);
+  for (double samples = result.samples; samples < kMostForecast; samples *= 1.1) {
+    const MethodForecast next = forecast_spread(trial, samples, samples > kFirstRound ? gain : 1);
+    if (goal.seconds && next.work > *goal.seconds * kWorkOfSecond) break;
+    result = next;
+    if (goal.rel_error && reaches(result, goal)) break;
+  }
+  return result;
+}
+
 }  // namespace
 
 double mean_noise(const MethodTrial& trial) {
@@ -84,15 +97,12 @@ MethodForecast forecast_samples(const MethodTrial& trial, double samples) { retu
 
 MethodForecast forecast(const MethodTrial& trial, const Goal& goal) {
   if (goal.spp) return forecast_samples(trial, *goal.spp);
-  // Samples go up by tenths until the goal, or the time, is met.
-  const double gain = goal.rel_error ? spread_gain(trial) : 1;
-  MethodForecast result = forecast_spread(trial, goal.rel_error ? kFirstRound : 1, 1);
-  for (double samples = result.samples; samples < kMostForecast; samples *= 1.1) {
-    const MethodForecast next = forecast_spread(trial, samples, samples > kFirstRound ? gain : 1);
-    if (goal.seconds && next.work > *goal.seconds * kWorkOfSecond) break;
-    result = next;
-    if (goal.rel_error && reaches(result, goal)) break;
-  }
+  MethodForecast result = forecast_goal(trial, goal);
+  if (!goal.rel_error) return result;
+  MethodTrial noisier = trial;
+  for (TileNoise& tile : noisier.noise) tile.share *= 2;
+  noisier.unmet_noise *= 2;
+  result.work_in_doubt = forecast_goal(noisier, goal).work;
   return result;
 }
 

@@ -27,9 +27,10 @@ struct MethodTrial {
 
 // What a picture by a method will take.
 struct MethodForecast {
-  double samples = 0;  // of a pixel, in the mean
-  double error = 0;    // sqrt(relMSE), by noise and bias
-  double work = 0;     // in rays of path tracing
+  double samples = 0;        // of a pixel, in the mean
+  double error = 0;          // sqrt(relMSE), by noise and bias
+  double work = 0;           // in rays of path tracing
+  double work_in_doubt = 0;  // the same if there is twice the noise; of error goals
   double seconds = 0;
 };
 
