@@ -4,9 +4,9 @@ foretold of that time; and the true error of every run.
     chooser.py [--goals 0.05 0.02] [--seeds 3] [--most-seconds 120] [--out out] [SCENE ...]
 
 Goals below 3 % are for smaller pictures. Two threads; seconds are those of preparing and rendering, medians over the
-seeds. A method that takes longer than --most-seconds, or that does not render the scene, or ends without a claim of the goal,
-is shown as such; of the slow ones the limit counts, so that "worst over auto" is a lower bound. Progressive photons are left out where they are path
-tracing, bit by bit.
+seeds. A method that takes longer than --most-seconds, or that does not render the scene, is shown as such; of the slow
+ones the limit counts, so that "worst over auto" is a lower bound. One that ends early, as it knows that it will not get
+there, counts as slow. Progressive photons are left out where they are path tracing, bit by bit.
 
 The reference are two independent runs to half the goal, kept in the --out folder (delete them when a scene
 changes). True relMSE is the mean of (I - A) (I - B) / (R^2 + 0.01) over both, A and B, and their mean R: their noise
@@ -98,8 +98,7 @@ def render(name: str, size: str, image: Path, method: str, seed: int, most: floa
     if done.returncode != 0:
         return done.stderr.strip().splitlines()[-1].removeprefix("error: ")
     run = Run(read(image), json.loads(report.read_text()))
-    unmet = [warning for warning in run.report["warnings"] if warning.startswith("goal not reached")]
-    return unmet[0] if unmet else run
+    return "slow" if any(warning.startswith("goal not reached") for warning in run.report["warnings"]) else run
 
 
 def read(image: Path) -> np.ndarray:
