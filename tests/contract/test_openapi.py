@@ -45,6 +45,8 @@ def test_design_has_every_route() -> None:
         "/v1/jobs/{job_id}/plan",
         "/v1/jobs/{job_id}/report",
         "/v1/jobs/{job_id}/chart.svg",
+        "/v1/keys",
+        "/v1/keys/{key_id}",
         "/v1/workers",
         "/v1/system",
         "/healthz",

@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 from hypothesis.stateful import RuleBasedStateMachine, invariant, rule
 from sqlalchemy import create_engine, inspect
 
-from fluxfarm.adapters.ledger import SqliteLedger, schema
+from fluxfarm.adapters.ledger import SqliteLedger, rows, schema
 from fluxfarm.adapters.ledger.database import migrate
 from fluxfarm.domain.events import EventKind
 from fluxfarm.domain.goal import Goal, Limits
@@ -241,6 +241,49 @@ def test_damaged_or_newer_database_is_refused(tmp_path: Path) -> None:
     connection.close()
     with pytest.raises(SchemaTooNew):
         SqliteLedger(newer)
+
+
+def test_database_of_the_first_version_is_brought_to_the_newest(tmp_path: Path) -> None:
+    path = tmp_path / "first.sqlite3"
+    request = rows.to_json(
+        {
+            "name": "old",
+            "bundle": {"entry": "scene.xml", "files": {"scene.xml": "0" * 64}},
+            "builtin": None,
+            "size": None,
+            "crop": None,
+            "integrator": None,
+            "goal": {"rel_error": None, "spp": 4, "seconds": None},
+            "limits": {"spp": None, "seconds": None},
+            "priority": 0,
+            "seed": 7,
+        }
+    )
+    connection = sqlite3.connect(path)
+    connection.executescript(schema.MIGRATIONS[0])
+    connection.execute("CREATE TABLE schema_version (version INTEGER NOT NULL) STRICT")
+    connection.execute("INSERT INTO schema_version VALUES (1)")
+    connection.execute(
+        "INSERT INTO jobs (id, state, request, created_at, last_seq) VALUES ('old', 'SUCCEEDED', ?, 5, 1)", (request,)
+    )
+    connection.execute("INSERT INTO events VALUES ('old', 1, 'state', 5, '{\"state\": \"QUEUED\"}')")
+    connection.execute(
+        "INSERT INTO revisions VALUES ('old', 1, 1, 4, 4, 0.1, 0, 0, 0, 0, 1.5, 'exr', 10, 'png', 'film', 6)"
+    )
+    connection.commit()
+    connection.close()
+
+    async def scenario() -> None:
+        ledger = SqliteLedger(path)
+        job = await ledger.job("old")
+        assert (job.request.goal, job.request.seed, job.owner) == (Goal(spp=4), 7, None)
+        assert job.newest == Revision(1, 1, 4, 4, 4.0, 0.1, 0.0, (0, 0, 0), 0, 1.5, "exr", 10, "png", "film", 6)
+        assert [event.kind for event in await ledger.events_after("old", 0, 10)] == [EventKind.STATE]
+        new = await ledger.add_job("new", REQUEST, None, "b")
+        assert {record.id for record in await ledger.jobs()} == {"old", new}
+        ledger.close()
+
+    asyncio.run(scenario())
 
 
 def test_tables_are_described_as_the_migrations_make_them(tmp_path: Path) -> None:

@@ -8,7 +8,7 @@ from contextlib import AsyncExitStack
 from dataclasses import asdict
 
 import uvicorn
-from fastapi import FastAPI
+from fastapi import Depends, FastAPI
 
 import fluxfarm
 from fluxfarm.adapters import data_folder
@@ -16,13 +16,15 @@ from fluxfarm.adapters.blobs import FileBlobStore
 from fluxfarm.adapters.engine.local_pool import LocalPool
 from fluxfarm.adapters.ledger import SqliteLedger
 from fluxfarm.adapters.ledger.database import sqlite_warning
-from fluxfarm.api import assets, images, jobs, problems, report, streams, system
+from fluxfarm.api import assets, images, jobs, keys, problems, report, streams, system
+from fluxfarm.api.access import authorize
 from fluxfarm.api.body_guard import BodyGuard
 from fluxfarm.api.deps import Services
 from fluxfarm.errors import StartError
 from fluxfarm.orchestrator import Orchestrator
+from fluxfarm.orchestrator.key_ring import KeyRing, new_secret
 from fluxfarm.orchestrator.orchestrator import OrchestratorSettings
-from fluxfarm.settings import Settings, engine_program, scenes_folder
+from fluxfarm.settings import OWNER_KEY_FILE, Settings, engine_program, scenes_folder
 
 log = logging.getLogger(__name__)
 
@@ -39,8 +41,8 @@ def create_app() -> FastAPI:
     app = FastAPI(title="Fluxfarm", version=fluxfarm.__version__, description=DESCRIPTION)
     app.add_middleware(BodyGuard)
     problems.install(app)
-    for room in (assets, jobs, streams, images, report, system):
-        app.include_router(room.router)
+    for room in (assets, jobs, streams, images, report, system, keys):
+        app.include_router(room.router, dependencies=[Depends(authorize)])
     return app
 
 
@@ -62,20 +64,38 @@ async def start_services(settings: Settings, stack: AsyncExitStack) -> Services:
     orchestrator = Orchestrator(ledger, blobs, pool, limits)
     stack.push_async_callback(orchestrator.close)
     await orchestrator.start()
-    warning = sqlite_warning()
-    log.info("service started", extra={"data": str(settings.data), "swept_files": swept, "sqlite_warning": warning})
+    ring = await _key_ring(settings, ledger) if settings.asks_for_keys else None
+    warnings = [] if (warning := sqlite_warning()) is None else [warning]
+    if ring is None and not settings.on_loopback:
+        warnings.append(f"anybody who reaches {settings.host} may do anything: FLUXFARM_KEYS = off")
+    log.info("service started", extra={"data": str(settings.data), "swept_files": swept, "warnings": warnings})
     return Services(
         orchestrator=orchestrator,
         ledger=ledger,
         blobs=blobs,
         pool=pool,
+        keys=ring,
         scenes=scenes_folder(settings),
         data=settings.data,
         settings={name: _plain(value) for name, value in asdict(settings).items()},
-        sqlite_warning=warning,
+        warnings=warnings,
         max_pixels=settings.max_pixels,
         max_asset_bytes=settings.max_asset_bytes,
     )
+
+
+async def _key_ring(settings: Settings, ledger: SqliteLedger) -> KeyRing:
+    """The keys. That of the machine's owner is in a file of the data folder, and made where the file is not there."""
+    ring = KeyRing(ledger)
+    await ring.load()
+    path = settings.data / OWNER_KEY_FILE
+    known = path.read_text().strip() if path.is_file() else ""
+    if ring.find(known) is None:
+        secret = new_secret()
+        data_folder.write_secret(path, secret)
+        await ring.renew_owner(secret)
+        log.warning("made a new API key for the owner", extra={"file": str(path)})
+    return ring
 
 
 class Server(uvicorn.Server):

@@ -16,6 +16,9 @@
     |   +-- IdempotencyConflict   409 idempotency-conflict
     |   +-- StaleLease            409 stale-lease
     +-- TooLarge                  413 too-large
+    +-- Unauthorized              401 unauthorized
+    +-- Forbidden                 403 forbidden
+    +-- QuotaExceeded             429 quota-exceeded
     +-- EngineTrouble             503 engine-trouble
     +-- DiskFull                  507 disk-full
     +-- ChartError                (ends `fluxfarm chart`)
@@ -29,6 +32,7 @@
 Thrown low, caught once: `api/problems.py` turns a FarmError into an HTTP problem reply.
 """
 
+import math
 from typing import Any, ClassVar
 
 
@@ -40,6 +44,10 @@ class FarmError(Exception):
 
     def extra(self) -> dict[str, Any]:
         """Further members of the problem reply."""
+        return {}
+
+    def headers(self) -> dict[str, str]:
+        """Headers of the problem reply."""
         return {}
 
 
@@ -154,6 +162,37 @@ class TooLarge(FarmError):
 
     status = 413
     code = "too-large"
+
+
+class Unauthorized(FarmError):
+    """The request carries no key that this service knows."""
+
+    status = 401
+    code = "unauthorized"
+
+    def headers(self) -> dict[str, str]:
+        return {"WWW-Authenticate": 'Bearer realm="fluxfarm"'}
+
+
+class Forbidden(FarmError):
+    """The key of the request does not allow this."""
+
+    status = 403
+    code = "forbidden"
+
+
+class QuotaExceeded(FarmError):
+    """The key has used what it may; `retry_after_s` is when it is worth to ask again."""
+
+    status = 429
+    code = "quota-exceeded"
+
+    def __init__(self, message: str, retry_after_s: float) -> None:
+        self.retry_after_s = retry_after_s
+        super().__init__(message)
+
+    def headers(self) -> dict[str, str]:
+        return {"Retry-After": str(math.ceil(self.retry_after_s))}
 
 
 class EngineTrouble(FarmError):

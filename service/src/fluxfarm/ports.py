@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Protocol
 
+from fluxfarm.domain.access import ApiKey, Usage
 from fluxfarm.domain.events import Event
 from fluxfarm.domain.job import JobState
 from fluxfarm.domain.leases import Lease, Outcome
@@ -102,10 +103,13 @@ class BlobStore(Protocol):
 class Ledger(Protocol):
     """The one truth about jobs, durable when a call returns. Writers raise StaleLease and IllegalTransition."""
 
-    async def add_job(self, job_id: str, request: JobRequest, key: str | None, body_sha256: str) -> str:
-        """Record a new QUEUED job; returns its id, or that of the job which `key` made before.
+    async def add_job(
+        self, job_id: str, request: JobRequest, key: str | None, body_sha256: str, owner: ApiKey | None = None
+    ) -> str:
+        """Record a new QUEUED job of `owner`; returns its id, or that of the job which the Idempotency-Key `key` of the
+        same owner made before.
 
-        Raises IdempotencyConflict if the key was used with another body."""
+        Raises IdempotencyConflict if the key was used with another body, QuotaExceeded if the owner has its fill."""
 
     async def change_state(
         self, job_id: str, state: JobState, reason: str | None = None, running_s: float | None = None
@@ -153,6 +157,24 @@ class Ledger(Protocol):
 
     async def revisions(self, job_id: str) -> list[Revision]:
         """All revisions, oldest first."""
+
+    async def add_key(self, key: ApiKey, sha256: str) -> None:
+        """Keep an API key by the SHA-256 of its secret."""
+
+    async def drop_key(self, key_id: str) -> bool:
+        """Forget an API key; False if there is none of that id."""
+
+    async def keys(self) -> dict[str, ApiKey]:
+        """All API keys by the SHA-256 of their secrets, oldest first."""
+
+    async def usage(self, key_id: str) -> tuple[int, list[Usage]]:
+        """Unfinished jobs of a key, and what it used in the last 24 hours, oldest hour first."""
+
+    async def bytes_left(self, key: ApiKey) -> int | None:
+        """How much the key may still upload (None: any); raises QuotaExceeded if nothing."""
+
+    async def note_upload(self, key_id: str, sent_bytes: int) -> None:
+        """Count what a key has uploaded."""
 
     async def highest_fence(self) -> int:
         """The highest fence that any lease ever had."""

@@ -1,5 +1,6 @@
 """What can be set, all from FLUXFARM_ variables of the environment. README.md has a line for each."""
 
+import ipaddress
 import os
 import shutil
 import sys
@@ -10,6 +11,8 @@ from pathlib import Path
 from fluxfarm.errors import BadSetting, EngineMissing
 
 PREFIX = "FLUXFARM_"
+# In the data folder, the API key of who runs the service; nobody else can read it.
+OWNER_KEY_FILE = "owner.key"
 _PACKAGE = Path(__file__).resolve().parent
 
 
@@ -32,12 +35,32 @@ class Settings:
     keep_assets_hours: float = 24.0
     journal: str = "wal"
     sync: str = "full"
+    keys: str = "auto"
     log_level: str = "info"
 
     @property
     def threads_per_worker(self) -> int:
         """Threads of each engine process: as set, else all cores shared among the processes."""
         return self.threads or max(1, len(os.sched_getaffinity(0)) // self.workers)
+
+    @property
+    def asks_for_keys(self) -> bool:
+        """Whether requests need an API key: as set, else where other machines can reach the service."""
+        return self.keys == "on" or (self.keys == "auto" and not self.on_loopback)
+
+    @property
+    def reached_at(self) -> str:
+        """The host to ask for from this machine; an address of all interfaces is none to ask for."""
+        host = {"0.0.0.0": "127.0.0.1", "::": "::1"}.get(self.host, self.host)
+        return f"[{host}]" if ":" in host else host
+
+    @property
+    def on_loopback(self) -> bool:
+        """Whether only this machine can reach the service. A name other than localhost may mean any address."""
+        try:
+            return ipaddress.ip_address(self.host).is_loopback
+        except ValueError:
+            return self.host == "localhost"
 
 
 DEFAULTS = Settings()
@@ -55,6 +78,7 @@ BOUNDS: dict[str, tuple[float, float]] = {
 CHOICES: dict[str, tuple[str, ...]] = {
     "journal": ("wal", "delete"),
     "sync": ("full", "off"),
+    "keys": ("auto", "on", "off"),
     "log_level": ("debug", "info", "warning", "error"),
 }
 

@@ -31,6 +31,18 @@ def hold(root: Path) -> IO[str]:
     return file
 
 
+def write_secret(path: Path, secret: str) -> None:
+    """Write a file that only this user can read, over an older one."""
+    temporary = path.with_name(f".{path.name}.part")
+    temporary.unlink(missing_ok=True)
+    temporary.touch(0o600, exist_ok=False)
+    with temporary.open("w") as file:
+        file.write(secret + "\n")
+        file.flush()
+        os.fsync(file.fileno())
+    temporary.replace(path)
+
+
 def sweep(root: Path, named: dict[str, set[str]], kept_assets: Iterable[str], keep_assets_s: float) -> int:
     """Remove what nothing refers to; returns how many files went.
 

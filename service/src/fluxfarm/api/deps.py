@@ -8,21 +8,23 @@ from fastapi import Depends, Request
 from fastapi import Path as PathParameter
 
 from fluxfarm.orchestrator import Orchestrator
+from fluxfarm.orchestrator.key_ring import KeyRing
 from fluxfarm.ports import BlobStore, Ledger, WorkerPool
 
 
 @dataclass(frozen=True, slots=True)
 class Services:
-    """The parts that the routes talk to, and fixed facts about this service."""
+    """The parts that the routes talk to, and fixed facts about this service. `keys`: None where none are asked for."""
 
     orchestrator: Orchestrator
     ledger: Ledger
     blobs: BlobStore
     pool: WorkerPool
+    keys: KeyRing | None
     scenes: Path | None
     data: Path
     settings: dict[str, str | int | float]
-    sqlite_warning: str | None
+    warnings: list[str]
     max_pixels: int
     max_asset_bytes: int
 

@@ -9,6 +9,7 @@ from typing import Annotated, Any
 
 from fastapi import APIRouter, Header, Query, Response
 
+from fluxfarm.api.access import Caller, own_job
 from fluxfarm.api.deps import Farm, JobId, Services
 from fluxfarm.api.problems import problem_responses
 from fluxfarm.api.schemas import JobIn, JobOut, JobsOut, RevisionsOut, job_out, revision_out
@@ -28,13 +29,20 @@ LONGEST_WAIT_S = 60.0
     summary="Submit a job",
     status_code=201,
     responses=problem_responses(
-        409, 413, 422, also={200: {"model": JobOut, "description": "The Idempotency-Key made this job before."}}
+        401,
+        403,
+        409,
+        413,
+        422,
+        429,
+        also={200: {"model": JobOut, "description": "The Idempotency-Key made this job before."}},
     ),
 )
 async def create_job(
     body: JobIn,
     response: Response,
     farm: Farm,
+    caller: Caller,
     idempotency_key: Annotated[
         str | None, Header(max_length=200, description="Sending the same key and body again gives the same job.")
     ] = None,
@@ -46,14 +54,14 @@ async def create_job(
     """
     request = await _checked(body, farm)
     body_sha256 = hashlib.sha256(json.dumps(body.model_dump(), sort_keys=True).encode()).hexdigest()
-    job_id, new = await farm.orchestrator.create(request, idempotency_key, body_sha256)
+    job_id, new = await farm.orchestrator.create(request, idempotency_key, body_sha256, caller)
     response.headers["Location"] = f"/v1/jobs/{job_id}"
     if not new:
         response.status_code = 200
     return await _now(farm, job_id)
 
 
-@router.get("/v1/jobs", summary="List jobs", responses=problem_responses(422))
+@router.get("/v1/jobs", summary="List jobs", responses=problem_responses(401, 422))
 async def list_jobs(
     farm: Farm,
     state: Annotated[list[JobState] | None, Query(description="Only jobs in these states.")] = None,
@@ -64,7 +72,7 @@ async def list_jobs(
     return JobsOut(jobs=[job_out(record, farm.orchestrator.progress(record)) for record in records])
 
 
-@router.get("/v1/jobs/{job_id}", summary="Look at a job", responses=problem_responses(404, 410, 422))
+@router.get("/v1/jobs/{job_id}", summary="Look at a job", responses=problem_responses(401, 404, 410, 422))
 async def get_job(
     job_id: JobId,
     response: Response,
@@ -81,34 +89,42 @@ async def get_job(
     return await _now(farm, job_id)
 
 
-@router.post("/v1/jobs/{job_id}:cancel", summary="Give a job up", responses=problem_responses(404, 409, 410))
-async def cancel_job(job_id: JobId, farm: Farm) -> JobOut:
+@router.post("/v1/jobs/{job_id}:cancel", summary="Give a job up", responses=problem_responses(401, 403, 404, 409, 410))
+async def cancel_job(job_id: JobId, farm: Farm, caller: Caller) -> JobOut:
     """Stop a job for good. After the reply no tile of it is committed; revisions published before stay."""
+    await own_job(farm, job_id, caller)
     await farm.orchestrator.cancel(job_id)
     return await _now(farm, job_id)
 
 
-@router.post("/v1/jobs/{job_id}:pause", summary="Pause a job", responses=problem_responses(404, 409, 410))
-async def pause_job(job_id: JobId, farm: Farm) -> JobOut:
+@router.post("/v1/jobs/{job_id}:pause", summary="Pause a job", responses=problem_responses(401, 403, 404, 409, 410))
+async def pause_job(job_id: JobId, farm: Farm, caller: Caller) -> JobOut:
     """Stop a job for now; committed tiles are kept."""
+    await own_job(farm, job_id, caller)
     await farm.orchestrator.pause(job_id)
     return await _now(farm, job_id)
 
 
-@router.post("/v1/jobs/{job_id}:resume", summary="Resume a paused job", responses=problem_responses(404, 409, 410))
-async def resume_job(job_id: JobId, farm: Farm) -> JobOut:
+@router.post(
+    "/v1/jobs/{job_id}:resume", summary="Resume a paused job", responses=problem_responses(401, 403, 404, 409, 410)
+)
+async def resume_job(job_id: JobId, farm: Farm, caller: Caller) -> JobOut:
     """Let a paused job go on where it stopped."""
+    await own_job(farm, job_id, caller)
     await farm.orchestrator.resume(job_id)
     return await _now(farm, job_id)
 
 
-@router.delete("/v1/jobs/{job_id}", summary="Delete a job", status_code=204, responses=problem_responses(404, 410))
-async def delete_job(job_id: JobId, farm: Farm) -> None:
+@router.delete(
+    "/v1/jobs/{job_id}", summary="Delete a job", status_code=204, responses=problem_responses(401, 403, 404, 410)
+)
+async def delete_job(job_id: JobId, farm: Farm, caller: Caller) -> None:
     """Remove a job and all of its images; an unfinished one is cancelled first."""
+    await own_job(farm, job_id, caller)
     await farm.orchestrator.delete(job_id)
 
 
-@router.get("/v1/jobs/{job_id}/revisions", summary="List revisions", responses=problem_responses(404, 410))
+@router.get("/v1/jobs/{job_id}/revisions", summary="List revisions", responses=problem_responses(401, 404, 410))
 async def list_revisions(job_id: JobId, farm: Farm) -> RevisionsOut:
     """All published images of a job, oldest first."""
     await farm.ledger.job(job_id)

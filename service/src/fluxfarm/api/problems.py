@@ -83,7 +83,7 @@ async def _farm_error(request: Request, error: Exception) -> Response:
     assert isinstance(error, FarmError)
     if error.status >= 500:
         log.error("request failed", extra={"path": request.url.path, "reason": str(error)})
-    return problem(error.status, error.code, str(error), request.url.path, error.extra())
+    return problem(error.status, error.code, str(error), request.url.path, error.extra(), error.headers())
 
 
 async def _malformed(request: Request, error: Exception) -> Response:

@@ -1,9 +1,9 @@
 """The JSON that goes in and out. Unknown members are errors, numbers are not guessed from text."""
 
 from datetime import UTC, datetime
-from typing import Any, Literal
+from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, field_validator, model_validator
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field, model_validator
 
 from fluxfarm.domain.goal import settled
 from fluxfarm.domain.job import JobState
@@ -15,6 +15,15 @@ MAX_SPP = 1 << 24
 MAX_SECONDS = 30 * 86_400
 MAX_SEED = (1 << 53) - 1
 
+
+def _printable(name: str) -> str:
+    if any(ord(character) < 32 or 0xD800 <= ord(character) < 0xE000 for character in name):
+        raise ValueError("expected text without control characters")
+    return name
+
+
+# For people.
+Name = Annotated[str, AfterValidator(_printable), Field(max_length=200)]
 Integrator = Literal["auto", "path", "photon", "photon-progressive", "irradiance-cache"]
 
 
@@ -87,7 +96,7 @@ class LimitsIn(Strict):
 class JobIn(Strict):
     """A scene and what is wanted of it."""
 
-    name: str = Field("", max_length=200, description="For people; the service does not read it.")
+    name: Name = Field("", description="For people; the service does not read it.")
     scene: SceneIn
     size: SizeIn | None = None
     crop: CropIn | None = None
@@ -101,13 +110,6 @@ class JobIn(Strict):
     limits: LimitsIn = Field(default_factory=LimitsIn)
     priority: int = Field(0, ge=-100, le=100, description="Higher goes first.")
     seed: int = Field(0, ge=0, le=MAX_SEED, description="Another seed gives an independent image.")
-
-    @field_validator("name")
-    @classmethod
-    def _printable(cls, name: str) -> str:
-        if any(ord(character) < 32 or 0xD800 <= ord(character) < 0xE000 for character in name):
-            raise ValueError("expected text without control characters")
-        return name
 
 
 class MissingIn(Strict):
@@ -162,6 +164,7 @@ class JobOut(BaseModel):
     state: JobState
     reason: str | None = Field(description="Why the job failed.")
     created_at: str
+    owner: str | None = Field(description="Id of the API key that submitted it; absent where none are asked for.")
     scene: dict[str, Any]
     size: dict[str, int] | None
     crop: dict[str, int] | None
@@ -203,6 +206,7 @@ def job_out(record: JobRecord, progress: Progress) -> JobOut:
         state=record.state,
         reason=record.reason,
         created_at=iso_time(record.created_at),
+        owner=record.owner,
         scene=scene | {"digest": request.bundle.digest()},
         size=None if size is None else {"width": size[0], "height": size[1]},
         crop=None if crop is None else {"x": crop.x, "y": crop.y, "width": crop.width, "height": crop.height},

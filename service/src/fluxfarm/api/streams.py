@@ -36,6 +36,7 @@ JSON_LINES = "application/jsonl"
     # Not EventSourceResponse here: the framework would then take the route for a generator of one fixed form.
     response_class=StreamingResponse,
     responses=problem_responses(
+        401,
         404,
         410,
         422,
@@ -75,6 +76,7 @@ async def events(
     summary="Stream the images",
     response_class=StreamingResponse,
     responses=problem_responses(
+        401,
         404,
         410,
         also={

@@ -12,6 +12,7 @@ from starlette.status import HTTP_503_SERVICE_UNAVAILABLE
 
 import fluxfarm
 from fluxfarm.api.deps import Farm
+from fluxfarm.api.problems import problem_responses
 
 router = APIRouter(tags=["system"])
 LEAST_FREE_BYTES = 1 << 30
@@ -55,7 +56,7 @@ class HealthOut(BaseModel):
     status: str
 
 
-@router.get("/v1/workers", summary="Engine processes")
+@router.get("/v1/workers", summary="Engine processes", responses=problem_responses(401))
 async def workers(farm: Farm) -> WorkersOut:
     """The engine processes and what they work on."""
     return WorkersOut(
@@ -75,12 +76,12 @@ async def workers(farm: Farm) -> WorkersOut:
     )
 
 
-@router.get("/v1/system", summary="Versions and settings")
+@router.get("/v1/system", summary="Versions and settings", responses=problem_responses(401))
 async def system(farm: Farm) -> SystemOut:
     """Versions, settings and free space, with what the owner should know about them."""
     free = shutil.disk_usage(farm.data).free
     builds = sorted({worker.engine_build for worker in farm.pool.workers() if worker.engine_build})
-    warnings = [] if farm.sqlite_warning is None else [farm.sqlite_warning]
+    warnings = list(farm.warnings)
     if free < LEAST_FREE_BYTES:
         warnings.append(f"{free} bytes free in {farm.data}, expected at least {LEAST_FREE_BYTES}")
     if len(builds) > 1:
@@ -99,7 +100,11 @@ async def system(farm: Farm) -> SystemOut:
     )
 
 
-@router.get("/healthz", summary="Health", responses={503: {"model": HealthOut, "description": "It cannot render."}})
+@router.get(
+    "/healthz",
+    summary="Health",
+    responses=problem_responses(401, also={503: {"model": HealthOut, "description": "It cannot render."}}),
+)
 async def healthz(farm: Farm, response: Response) -> HealthOut:
     """200 while the ledger answers and an engine process starts; for load balancers."""
     await farm.ledger.highest_fence()
@@ -109,7 +114,7 @@ async def healthz(farm: Farm, response: Response) -> HealthOut:
     return HealthOut(status="ok")
 
 
-@router.get("/metrics", summary="Metrics", response_class=PlainTextResponse)
+@router.get("/metrics", summary="Metrics", response_class=PlainTextResponse, responses=problem_responses(401))
 async def metrics(farm: Farm) -> PlainTextResponse:
     """Counters and histograms in the Prometheus text format, without labels for single jobs."""
     from fluxfarm.api.metrics import exposition

@@ -11,18 +11,21 @@ import httpx2
 
 from fluxfarm.cli.bundle import LocalBundle
 from fluxfarm.cli.exits import CommandError, Exit
+from fluxfarm.settings import PREFIX
 
 TRIES = 3
 
 
 class ServiceClient:
-    """Talks to the service at `url`."""
+    """Talks to the service at `url`, with an API key where it asks for one."""
 
-    def __init__(self, url: str) -> None:
+    def __init__(self, url: str, key: str | None = None) -> None:
         self.url = url.rstrip("/")
         # Reading the system's certificates takes 0.1 s.
         verify = not self.url.startswith("http://")
-        self._http = httpx2.Client(base_url=self.url, timeout=httpx2.Timeout(90.0, connect=10.0), verify=verify)
+        headers = {"Authorization": f"Bearer {key}"} if key else {}
+        timeout = httpx2.Timeout(90.0, connect=10.0)
+        self._http = httpx2.Client(base_url=self.url, timeout=timeout, verify=verify, headers=headers)
 
     def __enter__(self) -> "ServiceClient":
         return self
@@ -100,4 +103,6 @@ def _refusal(reply: httpx2.Response) -> CommandError:
         detail = str(reply.json().get("detail"))
     except ValueError:
         detail = f"status {reply.status_code}"
+    if reply.status_code == 401:
+        detail += f"; set {PREFIX}API_KEY"
     return CommandError(Exit.BAD_INPUT if reply.status_code < 500 else Exit.UNREACHABLE, detail)

@@ -10,14 +10,17 @@ from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import replace
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from fluxfarm.cli.exits import EXIT_SENTENCES, CommandError, Exit
 from fluxfarm.cli.request import JobOptions, find_scene, job_body, option_members
 from fluxfarm.errors import FarmError, StartError
-from fluxfarm.settings import PREFIX, Settings, from_environment
+from fluxfarm.settings import OWNER_KEY_FILE, PREFIX, Settings, from_environment
+
+if TYPE_CHECKING:
+    from fluxfarm.cli.client import ServiceClient
 
 EXITS = "Exit codes: " + "; ".join(f"{code.value} {text}" for code, text in EXIT_SENTENCES.items()) + "."
 app = typer.Typer(
@@ -90,10 +93,9 @@ def render(
         if path is not None and not path.absolute().parent.is_dir():
             raise CommandError(Exit.BAD_INPUT, f"{path}: the folder {path.absolute().parent} is not there")
     found = find_scene(scene)
-    from fluxfarm.cli.client import ServiceClient
     from fluxfarm.cli.follow import describe, follow, outcome
 
-    with _service(server, threads, workers) as url, ServiceClient(url) as client:
+    with _service(server, threads, workers) as client:
         body, key = job_body(client, found, options), uuid.uuid4().hex
         try:
             job = follow(client, client.submit(body, key)["id"])
@@ -120,21 +122,18 @@ def submit(
     server: ServerOption = None,
 ) -> None:
     """Submit SCENE to a service and print the id of the job."""
-    from fluxfarm.cli.client import ServiceClient
-
     options = JobOptions(rel_error, spp, seconds, integrator, size, crop, seed, priority, name)
     found = find_scene(scene)
-    with ServiceClient(_address(server)) as client:
+    with _client(server) as client:
         print(client.submit(job_body(client, found, options), uuid.uuid4().hex)["id"])
 
 
 @app.command()
 def watch(job_id: JobArgument, server: ServerOption = None) -> None:
     """Follow a job until it ends."""
-    from fluxfarm.cli.client import ServiceClient
     from fluxfarm.cli.follow import follow, outcome
 
-    with ServiceClient(_address(server)) as client:
+    with _client(server) as client:
         outcome(follow(client, job_id))
 
 
@@ -147,9 +146,7 @@ def get(
     server: ServerOption = None,
 ) -> None:
     """Fetch the newest image of a job, finished or not."""
-    from fluxfarm.cli.client import ServiceClient
-
-    with ServiceClient(_address(server)) as client:
+    with _client(server) as client:
         _fetch(client, job_id, out, png, revision)
     print(out)
 
@@ -157,9 +154,7 @@ def get(
 @app.command()
 def cancel(job_id: JobArgument, server: ServerOption = None) -> None:
     """Give a job up."""
-    from fluxfarm.cli.client import ServiceClient
-
-    with ServiceClient(_address(server)) as client:
+    with _client(server) as client:
         print(client.call("POST", f"/v1/jobs/{job_id}:cancel")["state"])
 
 
@@ -168,10 +163,9 @@ def list_jobs(
     as_json: Annotated[bool, typer.Option("--json", help="The service's JSON.")] = False, server: ServerOption = None
 ) -> None:
     """List jobs, newest first."""
-    from fluxfarm.cli.client import ServiceClient
     from fluxfarm.cli.follow import describe
 
-    with ServiceClient(_address(server)) as client:
+    with _client(server) as client:
         jobs: list[dict[str, Any]] = client.call("GET", "/v1/jobs")["jobs"]
     if as_json:
         print(json.dumps(jobs, indent=2))
@@ -193,6 +187,51 @@ def serve(
         from fluxfarm.cli.serving import run
 
     run(_changed(from_environment(), host=host, port=port, data=data, workers=workers, threads=threads))
+
+
+keys_app = typer.Typer(help="Make, list and drop the API keys of a service.", no_args_is_help=True)
+app.add_typer(keys_app, name="keys")
+
+
+@keys_app.command("add")
+def add_key(
+    name: Annotated[str, typer.Argument(metavar="NAME", help="Whose it is.")],
+    scope: Annotated[
+        str, typer.Option("--scope", help="read, submit or admin; each contains those before it.")
+    ] = "submit",
+    jobs: Annotated[int | None, typer.Option("--jobs", help="Most unfinished jobs at once.")] = None,
+    bytes_a_day: Annotated[int | None, typer.Option("--bytes-a-day", help="Most uploaded bytes in 24 hours.")] = None,
+    samples_a_day: Annotated[
+        int | None, typer.Option("--samples-a-day", help="Most camera samples in 24 hours, over all pixels.")
+    ] = None,
+    server: ServerOption = None,
+) -> None:
+    """Make a key and print it, the only time."""
+    quota = {"jobs": jobs, "bytes_a_day": bytes_a_day, "samples_a_day": samples_a_day}
+    with _client(server) as client:
+        print(client.call("POST", "/v1/keys", json={"name": name, "scope": scope, "quota": quota})["key"])
+
+
+@keys_app.command("list")
+def list_keys(server: ServerOption = None) -> None:
+    """List keys, oldest first, with what they used in 24 hours."""
+    with _client(server) as client:
+        keys: list[dict[str, Any]] = client.call("GET", "/v1/keys")["keys"]
+    for key in keys:
+        used = key["usage"]
+        print(
+            f"{key['id']}  {key['created_at']}  {key['scope']:6}  {key['name']}  "
+            f"{used['jobs']} jobs, {used['bytes']} bytes, {used['samples']} samples"
+        )
+
+
+@keys_app.command("drop")
+def drop_key(
+    key_id: Annotated[str, typer.Argument(metavar="ID", help="Id of the key.")], server: ServerOption = None
+) -> None:
+    """Drop a key: it opens nothing any more."""
+    with _client(server) as client:
+        client.call("DELETE", f"/v1/keys/{key_id}")
 
 
 @app.command()
@@ -263,30 +302,41 @@ def _changed(settings: Settings, **options: Any) -> Settings:
     return from_environment({**os.environ, **given}) if given else settings
 
 
-def _address(server: str | None) -> str:
-    """The service to talk to: as told, else where `fluxfarm serve` listens by default."""
-    settings = from_environment()
-    return server or f"http://{settings.host}:{settings.port}"
+def _client(server: str | None) -> "ServiceClient":
+    """Talks to the service that is told, else to where `fluxfarm serve` listens by default.
+
+    The key is that of the environment; for a service of this user on this machine also the one that it made itself."""
+    from fluxfarm.cli.client import ServiceClient
+
+    settings, key = from_environment(), os.environ.get(PREFIX + "API_KEY")
+    if server is not None:
+        return ServiceClient(server, key)
+    with suppress(OSError):
+        key = key or (settings.data / OWNER_KEY_FILE).read_text().strip()
+    return ServiceClient(f"http://{settings.reached_at}:{settings.port}", key)
 
 
 @contextmanager
-def _service(server: str | None, threads: int | None, workers: int | None) -> Iterator[str]:
-    """Address of the service to render with; an embedded one, with a data folder that is removed, if none is told."""
+def _service(server: str | None, threads: int | None, workers: int | None) -> Iterator["ServiceClient"]:
+    """The service to render with; an embedded one, with a data folder that is removed, if none is told."""
     if server is not None:
         if threads is not None or workers is not None:
             raise CommandError(Exit.BAD_INPUT, "--threads and --workers are settings of the service named by --server")
-        yield server
+        with _client(server) as client:
+            yield client
         return
     from fluxfarm import logs
 
     with _loading():
+        from fluxfarm.cli.client import ServiceClient
         from fluxfarm.cli.embedded import EmbeddedService
 
     logs.set_up(os.environ.get(PREFIX + "LOG_LEVEL") or "critical")
     with tempfile.TemporaryDirectory(prefix="fluxfarm-", ignore_cleanup_errors=True) as folder:
         settings = _changed(from_environment(), threads=threads, workers=workers)
-        with EmbeddedService(replace(settings, data=Path(folder), port=0, sync="off")) as service:
-            yield service.url
+        settings = replace(settings, data=Path(folder), port=0, sync="off", keys="off")
+        with EmbeddedService(settings) as service, ServiceClient(service.url) as client:
+            yield client
 
 
 @contextmanager

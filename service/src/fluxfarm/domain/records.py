@@ -30,6 +30,14 @@ class JobRequest:
     seed: int
 
     @property
+    def samples(self) -> int:
+        """Camera samples that the job is known to take; 0 if goal or size do not tell."""
+        if self.goal.spp is None or self.size is None:
+            return 0
+        pixels = self.size[0] * self.size[1] if self.crop is None else self.crop.area
+        return self.goal.spp * pixels
+
+    @property
     def method(self) -> str:
         """The integrator to render with; "" is the scene's own. A glTF file has no word for one, so it gets AUTO."""
         is_gltf = self.bundle.entry.lower().endswith((".glb", ".gltf"))
@@ -85,13 +93,15 @@ class Revision:
 
 @dataclass(frozen=True, slots=True)
 class JobRecord:
-    """A job as the ledger knows it. `facts` and `grid` are None before the scene was prepared."""
+    """A job as the ledger knows it. `facts` and `grid` are None before the scene was prepared. `owner` is the id of the
+    key that submitted it; None: nobody was asked for one."""
 
     id: str
     state: JobState
     reason: str | None
     request: JobRequest
     created_at: float
+    owner: str | None
     facts: SceneFacts | None
     grid: TileGrid | None
     warnings: tuple[str, ...]

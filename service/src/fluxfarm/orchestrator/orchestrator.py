@@ -13,6 +13,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TypeVar
 
+from fluxfarm.domain.access import ApiKey
 from fluxfarm.domain.goal import ERROR_TILE
 from fluxfarm.domain.job import JobState
 from fluxfarm.domain.leases import (
@@ -101,16 +102,18 @@ class Orchestrator:
 
     # ---- commands ----
 
-    async def create(self, request: JobRequest, key: str | None, body_sha256: str) -> tuple[str, bool]:
+    async def create(
+        self, request: JobRequest, key: str | None, body_sha256: str, owner: ApiKey | None
+    ) -> tuple[str, bool]:
         """Accept a job; returns its id and whether it is new. When this returns, the job survives everything.
 
-        Raises BadBundle, AssetsMissing or IdempotencyConflict."""
+        Raises BadBundle, AssetsMissing, IdempotencyConflict or QuotaExceeded."""
         check_bundle(request.bundle)
         missing = set(self._blobs.missing_assets(list(request.bundle.files.values())))
         if missing:
             raise AssetsMissing({path: sha for path, sha in request.bundle.files.items() if sha in missing})
         wanted_id = str(uuid.uuid4())
-        job_id = await self._ledger.add_job(wanted_id, request, key, body_sha256)
+        job_id = await self._ledger.add_job(wanted_id, request, key, body_sha256, owner)
         if job_id == wanted_id:
             await self._inbox.ask(lambda: self._runs.adopt(job_id))
         return job_id, job_id == wanted_id

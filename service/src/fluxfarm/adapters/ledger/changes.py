@@ -13,6 +13,7 @@ from typing import Any
 from sqlalchemy import Connection, delete, insert, select, update
 
 from fluxfarm.adapters.ledger import rows
+from fluxfarm.adapters.ledger.key_changes import check_job, note_usage
 from fluxfarm.adapters.ledger.schema import (
     deleted_jobs,
     events,
@@ -23,6 +24,7 @@ from fluxfarm.adapters.ledger.schema import (
     revisions,
     tiles,
 )
+from fluxfarm.domain.access import ApiKey
 from fluxfarm.domain.events import EventKind
 from fluxfarm.domain.job import TERMINAL_STATES, JobState, check_transition
 from fluxfarm.domain.records import JobRequest, OpenedPass, Revision, SceneFacts, TileCommit
@@ -63,9 +65,18 @@ def absent(connection: Connection, job_id: str) -> Gone | JobNotFound:
     return JobNotFound(f"job {job_id}: not found; expected the id of a job that this service accepted")
 
 
-def add_job(connection: Connection, job_id: str, request: JobRequest, key: str | None, body_sha256: str) -> str:
-    """Record a new job unless `key` made one before; returns the id of the job."""
+def add_job(
+    connection: Connection,
+    job_id: str,
+    request: JobRequest,
+    key: str | None,
+    body_sha256: str,
+    owner: ApiKey | None,
+) -> str:
+    """Record a new job of `owner` unless `key` made one before; returns the id of the job. Raises QuotaExceeded."""
     now = time.time()
+    if key is not None and owner is not None:
+        key = f"{owner.id}:{key}"
     if key is not None:
         before = connection.execute(select(idempotency_keys).where(idempotency_keys.c.key == key)).first()
         if before is not None:
@@ -74,12 +85,20 @@ def add_job(connection: Connection, job_id: str, request: JobRequest, key: str |
                     f"Idempotency-Key = {key!r}: was used for job {before.job_id} with another body; use a new key"
                 )
             return str(before.job_id)
+    if owner is not None:
+        check_job(connection, owner, request.samples)
+    if key is not None:
         connection.execute(
             insert(idempotency_keys).values(key=key, body_sha256=body_sha256, job_id=job_id, created_at=now)
         )
     connection.execute(
         insert(jobs).values(
-            id=job_id, state=JobState.QUEUED, request=rows.request_to_json(request), created_at=now, last_seq=0
+            id=job_id,
+            state=JobState.QUEUED,
+            request=rows.request_to_json(request),
+            created_at=now,
+            last_seq=0,
+            owner=None if owner is None else owner.id,
         )
     )
     append_events(connection, job_id, [(EventKind.STATE, {"state": JobState.QUEUED})])
@@ -160,17 +179,21 @@ def commit_tiles(connection: Connection, commits: Sequence[TileCommit], ended: S
 
 
 def _count_tiles(connection: Connection, job_id: str, taken: Sequence[TileCommit]) -> None:
-    """Add one job's tiles to its counters and its events."""
-    connection.execute(
+    """Add one job's tiles to its counters, its events and what its owner used."""
+    samples = sum(commit.samples for commit in taken)
+    owner = connection.execute(
         update(jobs)
         .where(jobs.c.id == job_id)
         .values(
             tiles_done=jobs.c.tiles_done + len(taken),
-            samples_done=jobs.c.samples_done + sum(commit.samples for commit in taken),
+            samples_done=jobs.c.samples_done + samples,
             rays=jobs.c.rays + sum(commit.rays for commit in taken),
             non_finite_samples=jobs.c.non_finite_samples + sum(commit.non_finite_samples for commit in taken),
         )
-    )
+        .returning(jobs.c.owner)
+    ).scalar_one()
+    if owner is not None:
+        note_usage(connection, owner, 0, samples)
     told = [
         (
             EventKind.TILE,

@@ -7,9 +7,10 @@ from typing import Any, TypeVar
 
 from sqlalchemy import Connection, func, select, text
 
-from fluxfarm.adapters.ledger import changes, rows
+from fluxfarm.adapters.ledger import changes, key_changes, rows
 from fluxfarm.adapters.ledger.database import Database
-from fluxfarm.adapters.ledger.schema import events, jobs, passes, revisions, tiles
+from fluxfarm.adapters.ledger.schema import api_keys, events, jobs, passes, revisions, tiles
+from fluxfarm.domain.access import ApiKey, Usage
 from fluxfarm.domain.events import Event
 from fluxfarm.domain.job import JobState
 from fluxfarm.domain.records import (
@@ -39,8 +40,10 @@ class SqliteLedger:
         """Finish waiting writes and close."""
         self._database.close()
 
-    async def add_job(self, job_id: str, request: JobRequest, key: str | None, body_sha256: str) -> str:
-        return await self._write(changes.add_job, job_id, request, key, body_sha256)
+    async def add_job(
+        self, job_id: str, request: JobRequest, key: str | None, body_sha256: str, owner: ApiKey | None = None
+    ) -> str:
+        return await self._write(changes.add_job, job_id, request, key, body_sha256, owner)
 
     async def change_state(
         self, job_id: str, state: JobState, reason: str | None = None, running_s: float | None = None
@@ -133,6 +136,30 @@ class SqliteLedger:
         return await self._database.read(
             lambda connection: [rows.revision_from_row(row) for row in connection.execute(query)]
         )
+
+    async def add_key(self, key: ApiKey, sha256: str) -> None:
+        await self._write(key_changes.add_key, key, sha256)
+
+    async def drop_key(self, key_id: str) -> bool:
+        return await self._write(key_changes.drop_key, key_id)
+
+    async def keys(self) -> dict[str, ApiKey]:
+        query = select(api_keys).order_by(api_keys.c.created_at)
+        return await self._database.read(
+            lambda connection: {row.sha256: rows.key_from_row(row) for row in connection.execute(query)}
+        )
+
+    async def usage(self, key_id: str) -> tuple[int, list[Usage]]:
+        def read(connection: Connection) -> tuple[int, list[Usage]]:
+            return key_changes.unfinished_jobs(connection, key_id), key_changes.usage(connection, key_id)
+
+        return await self._database.read(read)
+
+    async def bytes_left(self, key: ApiKey) -> int | None:
+        return await self._database.read(lambda connection: key_changes.bytes_left(connection, key))
+
+    async def note_upload(self, key_id: str, sent_bytes: int) -> None:
+        await self._write(key_changes.note_usage, key_id, sent_bytes, 0)
 
     async def highest_fence(self) -> int:
         query = text("SELECT seq FROM sqlite_sequence WHERE name = 'leases'")

@@ -6,6 +6,7 @@ from typing import Any
 
 from sqlalchemy import Row
 
+from fluxfarm.domain.access import ApiKey, Quota, Scope
 from fluxfarm.domain.events import Event, EventKind
 from fluxfarm.domain.goal import Goal, Limits
 from fluxfarm.domain.job import JobState
@@ -93,6 +94,26 @@ def event_from_row(row: Row[Any]) -> Event:
     return Event(row.seq, EventKind(row.kind), row.at, json.loads(row.data))
 
 
+def key_from_row(row: Row[Any]) -> ApiKey:
+    """A row of `api_keys`."""
+    quota = Quota(row.quota_jobs, row.quota_bytes, row.quota_samples)
+    return ApiKey(row.id, row.name, Scope(row.scope), quota, row.created_at)
+
+
+def key_to_row(key: ApiKey, sha256: str) -> dict[str, Any]:
+    """The inverse of `key_from_row`; `sha256` is that of the secret."""
+    return {
+        "id": key.id,
+        "sha256": sha256,
+        "name": key.name,
+        "scope": key.scope,
+        "quota_jobs": key.quota.jobs,
+        "quota_bytes": key.quota.bytes_a_day,
+        "quota_samples": key.quota.samples_a_day,
+        "created_at": key.created_at,
+    }
+
+
 def job_from_row(row: Row[Any], newest: Revision | None) -> JobRecord:
     """A row of `jobs`, with its newest revision."""
     facts = None if row.facts is None else facts_from_json(row.facts)
@@ -102,6 +123,7 @@ def job_from_row(row: Row[Any], newest: Revision | None) -> JobRecord:
         reason=row.reason,
         request=request_from_json(row.request),
         created_at=row.created_at,
+        owner=row.owner,
         facts=facts,
         grid=None if facts is None else TileGrid(facts.crop, row.tile_size),
         warnings=tuple(json.loads(row.warnings)),

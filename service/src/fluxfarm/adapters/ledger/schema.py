@@ -111,6 +111,27 @@ MIGRATIONS: tuple[str, ...] = (
     -- All were path traced.
     UPDATE revisions SET error_bias = 0
     """,
+    """
+    ALTER TABLE jobs ADD COLUMN owner TEXT;
+    CREATE INDEX jobs_by_owner ON jobs (owner, state);
+    CREATE TABLE api_keys (
+        id TEXT PRIMARY KEY,
+        sha256 TEXT NOT NULL UNIQUE,
+        name TEXT NOT NULL,
+        scope TEXT NOT NULL,
+        quota_jobs INTEGER,
+        quota_bytes INTEGER,
+        quota_samples INTEGER,
+        created_at REAL NOT NULL
+    ) STRICT, WITHOUT ROWID;
+    CREATE TABLE key_usage (
+        key_id TEXT NOT NULL,
+        hour INTEGER NOT NULL,
+        bytes INTEGER NOT NULL DEFAULT 0,
+        samples INTEGER NOT NULL DEFAULT 0,
+        PRIMARY KEY (key_id, hour)
+    ) STRICT, WITHOUT ROWID
+    """,
 )
 
 metadata = MetaData()
@@ -128,7 +149,7 @@ def _table(name: str, keys: str, texts: str = "", integers: str = "", floats: st
 jobs = _table(
     "jobs",
     "id",
-    "id state reason request facts warnings",
+    "id state reason request facts warnings owner",
     "tile_size tiles_done samples_done rays non_finite_samples passes_opened crashes resource_failures last_seq",
     "created_at running_s",
 )
@@ -145,3 +166,5 @@ revisions = _table(
     "mean_samples samples_expected error_noise error_bias error_bound error_unseen mean_r mean_g mean_b running_s at",
 )
 events = _table("events", "job_id seq", "job_id kind data", "seq", "at")
+api_keys = _table("api_keys", "id", "id sha256 name scope", "quota_jobs quota_bytes quota_samples", "created_at")
+key_usage = _table("key_usage", "key_id hour", "key_id", "hour bytes samples")
