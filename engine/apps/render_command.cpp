@@ -14,6 +14,7 @@
 #include "io/exr.h"
 #include "io/png.h"
 #include "method_options.h"
+#include "openjd.h"
 #include "output_file.h"
 #include "scene_options.h"
 #include "support/error.h"
@@ -32,6 +33,7 @@ struct RenderOptions {
   Goal goal;
   int threads = 0, tile = 64;
   std::uint64_t seed = 0;
+  bool openjd = false;
 };
 
 std::atomic<bool> interrupted{false};
@@ -69,6 +71,7 @@ void write_report(const std::filesystem::path& path, const nlohmann::json& repor
 
 void render(const RenderOptions& options) {
   std::signal(SIGINT, interrupt);
+  std::signal(SIGTERM, interrupt);
   OutputFile exr(options.exr);
   std::optional<OutputFile> png, report;
   if (!options.png.empty()) png.emplace(options.png);
@@ -90,7 +93,12 @@ void render(const RenderOptions& options) {
   const double prepare = watch.lap();
   if (method.choice) std::fprintf(stderr, "integrator: %s (%s)\n", method.choice->method.c_str(), method.choice->reason.c_str());
   const Integrator& integrator = *method.integrator;
-  const FrameResult result = render_frame(scene, integrator, settings, interrupted, say_progress, method.known);
+  OpenJdLines openjd(settings.goal);
+  const auto after_pass = [&](const TimelinePoint& point) {
+    say_progress(point);
+    if (options.openjd) openjd.progress(point);
+  };
+  const FrameResult result = render_frame(scene, integrator, settings, interrupted, after_pass, method.known);
   if (isatty(STDERR_FILENO) != 0) std::fprintf(stderr, "\n");
   watch.lap();
 
@@ -98,6 +106,7 @@ void render(const RenderOptions& options) {
   exr.commit([&](const std::filesystem::path& path) { write_exr(path, image); });
   if (png) png->commit([&](const std::filesystem::path& path) { write_png(path, image); });
   const double write = watch.lap();
+  if (options.openjd) OpenJdLines::done();
 
   std::vector<std::string> warnings = scene.warnings();
   if (result.summary.non_finite_samples > 0) {
@@ -139,6 +148,12 @@ void render(const RenderOptions& options) {
   report->commit([&](const std::filesystem::path& path) { write_report(path, figures); });
 }
 
+// Says why it failed in a line of its own, then fails as it would.
+void render_for_openjd(const RenderOptions& options) try { render(options); } catch (const std::exception& error) {
+  OpenJdLines::fail(error.what());
+  throw;
+}
+
 }  // namespace
 
 void add_render_command(CLI::App& app) {
@@ -155,7 +170,8 @@ void add_render_command(CLI::App& app) {
       ->check(CLI::Range(1, 4096))
       ->capture_default_str();
   command->add_option("--seed", options->seed, "Seed of the random numbers")->capture_default_str();
-  command->callback([options] { render(*options); });
+  command->add_flag("--openjd", options->openjd, "Also print progress as Open Job Description sessions read it");
+  command->callback([options] { options->openjd ? render_for_openjd(*options) : render(*options); });
 }
 
 }  // namespace fluxfarm
