@@ -21,6 +21,7 @@ from fluxfarm.api.access import authorize
 from fluxfarm.api.body_guard import BodyGuard
 from fluxfarm.api.deps import Services
 from fluxfarm.errors import StartError
+from fluxfarm.api.problems import problem_responses
 from fluxfarm.orchestrator import Orchestrator
 from fluxfarm.orchestrator.key_ring import KeyRing, new_secret
 from fluxfarm.orchestrator.orchestrator import OrchestratorSettings
@@ -42,7 +43,7 @@ def create_app() -> FastAPI:
     app.add_middleware(BodyGuard)
     problems.install(app)
     for room in (assets, jobs, streams, images, report, system, keys):
-        app.include_router(room.router, dependencies=[Depends(authorize)])
+        app.include_router(room.router, dependencies=[Depends(authorize)], responses=problem_responses(401, 403, 422))
     return app
 
 

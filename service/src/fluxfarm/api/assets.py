@@ -22,9 +22,7 @@ RETRY_S = 3600
     "/v1/assets/{sha256}",
     summary="Upload a file",
     status_code=201,
-    responses=problem_responses(
-        401, 403, 413, 422, 429, also={200: {"model": AssetOut, "description": "It was there already."}}
-    ),
+    responses=problem_responses(413, 429, also={200: {"model": AssetOut, "description": "It was there already."}}),
     openapi_extra={"requestBody": {"required": True, "content": {"application/octet-stream": {}}}},
 )
 async def put_asset(
@@ -52,7 +50,7 @@ async def put_asset(
     return AssetOut(sha256=sha256)
 
 
-@router.post("/v1/assets:missing", summary="Ask which files to upload", responses=problem_responses(401, 403, 413, 422))
+@router.post("/v1/assets:missing", summary="Ask which files to upload", responses=problem_responses(413))
 async def missing_assets(wanted: MissingIn, farm: Farm) -> MissingOut:
     """Of the given digests, name those that are not stored yet."""
     return MissingOut(missing=farm.blobs.missing_assets(wanted.sha256))

@@ -30,7 +30,7 @@ def _image(media_type: str) -> dict[int | str, dict[str, object]]:
         304: {"description": "The image with the `If-None-Match` tag is still the newest."},
         416: {"description": "The image has no such part."},
     }
-    return found | problem_responses(401, 404, 410)
+    return found | problem_responses(404, 410)
 
 
 @router.head("/v1/jobs/{job_id}/image.exr", include_in_schema=False)
@@ -85,7 +85,7 @@ async def preview(job_id: JobId, request: Request, farm: Farm) -> Response:
     "/v1/jobs/{job_id}/tiles/{column}-{row}.exr",
     summary="One tile",
     response_class=FileResponse,
-    responses=_image(EXR) | problem_responses(401, 404, 410, 503),
+    responses=_image(EXR) | problem_responses(404, 410, 503),
 )
 async def tile(
     job_id: JobId,

@@ -29,11 +29,8 @@ LONGEST_WAIT_S = 60.0
     summary="Submit a job",
     status_code=201,
     responses=problem_responses(
-        401,
-        403,
         409,
         413,
-        422,
         429,
         also={200: {"model": JobOut, "description": "The Idempotency-Key made this job before."}},
     ),
@@ -61,7 +58,7 @@ async def create_job(
     return await _now(farm, job_id)
 
 
-@router.get("/v1/jobs", summary="List jobs", responses=problem_responses(401, 422))
+@router.get("/v1/jobs", summary="List jobs")
 async def list_jobs(
     farm: Farm,
     state: Annotated[list[JobState] | None, Query(description="Only jobs in these states.")] = None,
@@ -72,7 +69,7 @@ async def list_jobs(
     return JobsOut(jobs=[job_out(record, farm.orchestrator.progress(record)) for record in records])
 
 
-@router.get("/v1/jobs/{job_id}", summary="Look at a job", responses=problem_responses(401, 404, 410, 422))
+@router.get("/v1/jobs/{job_id}", summary="Look at a job", responses=problem_responses(404, 410))
 async def get_job(
     job_id: JobId,
     response: Response,
@@ -89,7 +86,7 @@ async def get_job(
     return await _now(farm, job_id)
 
 
-@router.post("/v1/jobs/{job_id}:cancel", summary="Give a job up", responses=problem_responses(401, 403, 404, 409, 410))
+@router.post("/v1/jobs/{job_id}:cancel", summary="Give a job up", responses=problem_responses(404, 409, 410))
 async def cancel_job(job_id: JobId, farm: Farm, caller: Caller) -> JobOut:
     """Stop a job for good. After the reply no tile of it is committed; revisions published before stay."""
     await own_job(farm, job_id, caller)
@@ -97,7 +94,7 @@ async def cancel_job(job_id: JobId, farm: Farm, caller: Caller) -> JobOut:
     return await _now(farm, job_id)
 
 
-@router.post("/v1/jobs/{job_id}:pause", summary="Pause a job", responses=problem_responses(401, 403, 404, 409, 410))
+@router.post("/v1/jobs/{job_id}:pause", summary="Pause a job", responses=problem_responses(404, 409, 410))
 async def pause_job(job_id: JobId, farm: Farm, caller: Caller) -> JobOut:
     """Stop a job for now; committed tiles are kept."""
     await own_job(farm, job_id, caller)
@@ -105,9 +102,7 @@ async def pause_job(job_id: JobId, farm: Farm, caller: Caller) -> JobOut:
     return await _now(farm, job_id)
 
 
-@router.post(
-    "/v1/jobs/{job_id}:resume", summary="Resume a paused job", responses=problem_responses(401, 403, 404, 409, 410)
-)
+@router.post("/v1/jobs/{job_id}:resume", summary="Resume a paused job", responses=problem_responses(404, 409, 410))
 async def resume_job(job_id: JobId, farm: Farm, caller: Caller) -> JobOut:
     """Let a paused job go on where it stopped."""
     await own_job(farm, job_id, caller)
@@ -115,16 +110,14 @@ async def resume_job(job_id: JobId, farm: Farm, caller: Caller) -> JobOut:
     return await _now(farm, job_id)
 
 
-@router.delete(
-    "/v1/jobs/{job_id}", summary="Delete a job", status_code=204, responses=problem_responses(401, 403, 404, 410)
-)
+@router.delete("/v1/jobs/{job_id}", summary="Delete a job", status_code=204, responses=problem_responses(404, 410))
 async def delete_job(job_id: JobId, farm: Farm, caller: Caller) -> None:
     """Remove a job and all of its images; an unfinished one is cancelled first."""
     await own_job(farm, job_id, caller)
     await farm.orchestrator.delete(job_id)
 
 
-@router.get("/v1/jobs/{job_id}/revisions", summary="List revisions", responses=problem_responses(401, 404, 410))
+@router.get("/v1/jobs/{job_id}/revisions", summary="List revisions", responses=problem_responses(404, 410))
 async def list_revisions(job_id: JobId, farm: Farm) -> RevisionsOut:
     """All published images of a job, oldest first."""
     await farm.ledger.job(job_id)

@@ -70,22 +70,20 @@ class KeysOut(BaseModel):
     keys: list[KeyOut]
 
 
-@router.post("/v1/keys", summary="Make an API key", status_code=201, responses=problem_responses(401, 403, 404, 422))
+@router.post("/v1/keys", summary="Make an API key", status_code=201, responses=problem_responses(404))
 async def create_key(body: KeyIn, farm: Farm) -> NewKeyOut:
     """Make a key. Its secret is in this reply and nowhere else: the service keeps a digest of it."""
     key, secret = await _ring(farm).add(body.name, Scope(body.scope), Quota(**body.quota.model_dump()))
     return NewKeyOut(**(await _out(farm, key)).model_dump(), key=secret)
 
 
-@router.get("/v1/keys", summary="List API keys", responses=problem_responses(401, 403, 404))
+@router.get("/v1/keys", summary="List API keys", responses=problem_responses(404))
 async def list_keys(farm: Farm) -> KeysOut:
     """All keys with what they used."""
     return KeysOut(keys=[await _out(farm, key) for key in _ring(farm).all()])
 
 
-@router.delete(
-    "/v1/keys/{key_id}", summary="Drop an API key", status_code=204, responses=problem_responses(401, 403, 404)
-)
+@router.delete("/v1/keys/{key_id}", summary="Drop an API key", status_code=204, responses=problem_responses(404))
 async def drop_key(key_id: KeyId, farm: Farm) -> None:
     """Drop a key: requests with it are answered 401 from now on. Its jobs stay."""
     await _ring(farm).drop(key_id)

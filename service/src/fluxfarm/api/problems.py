@@ -2,7 +2,8 @@
 
 import json
 import logging
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from functools import partial
 from http import HTTPStatus
 from typing import Any
 
@@ -72,11 +73,22 @@ def problem(
 
 
 def install(app: FastAPI) -> None:
-    """Make `app` answer every error with a problem."""
+    """Make `app` answer every error with a problem, and say so in its OpenAPI document."""
+    app.openapi = partial(_document, app.openapi)  # type: ignore[method-assign]
     app.add_exception_handler(FarmError, _farm_error)
     app.add_exception_handler(RequestValidationError, _malformed)
     app.add_exception_handler(HTTPException, _http_error)
     app.add_exception_handler(Exception, _internal)
+
+
+def _document(openapi: Callable[[], dict[str, Any]]) -> dict[str, Any]:
+    """The framework puts the schema of a reply under the media type of the route, which is not that of problems."""
+    document = openapi()
+    for route in (route for methods in document["paths"].values() for route in methods.values()):
+        for reply in route["responses"].values():
+            if MEDIA_TYPE in reply.get("content", {}):
+                reply["content"] = {MEDIA_TYPE: {"schema": {"$ref": f"#/components/schemas/{Problem.__name__}"}}}
+    return document
 
 
 async def _farm_error(request: Request, error: Exception) -> Response:
@@ -99,6 +111,9 @@ async def _http_error(request: Request, error: Exception) -> Response:
     if error.status_code == HTTPStatus.NOT_FOUND:
         detail = f"{request.url.path}: nothing has this address; the addresses are listed in /openapi.json"
         return problem(NotFound.status, NotFound.code, detail, request.url.path)
+    if error.status_code == HTTPStatus.BAD_REQUEST:  # how the framework calls a body that is no text
+        detail = "body: cannot be read as text, expected JSON in UTF-8"
+        return problem(BadRequest.status, BadRequest.code, detail, request.url.path)
     phrase = HTTPStatus(error.status_code).phrase
     code = phrase.lower().replace(" ", "-")
     detail = str(error.detail)

@@ -45,7 +45,7 @@ class ReportOut(BaseModel):
     warnings: list[str]
 
 
-@router.get("/v1/jobs/{job_id}/plan", summary="Plan of a job", responses=problem_responses(401, 404, 410))
+@router.get("/v1/jobs/{job_id}/plan", summary="Plan of a job", responses=problem_responses(404, 410))
 async def plan(job_id: JobId, farm: Farm) -> dict[str, Any]:
     """What the scene contains, and which methods and parts of the engine it switches on or off."""
     record = await farm.ledger.job(job_id)
@@ -54,7 +54,7 @@ async def plan(job_id: JobId, farm: Farm) -> dict[str, Any]:
     return record.facts.plan
 
 
-@router.get("/v1/jobs/{job_id}/report", summary="Report of a job", responses=problem_responses(401, 404, 410))
+@router.get("/v1/jobs/{job_id}/report", summary="Report of a job", responses=problem_responses(404, 410))
 async def report(job_id: JobId, farm: Farm) -> ReportOut:
     """Goal, samples, time by state, the error over time, warnings."""
     record = await farm.ledger.job(job_id)
@@ -87,7 +87,7 @@ async def report(job_id: JobId, farm: Farm) -> ReportOut:
 @router.get(
     "/v1/jobs/{job_id}/chart.svg",
     summary="Error over time",
-    responses=problem_responses(401, 404, 410, also={200: {"content": {"image/svg+xml": {}}}}),
+    responses=problem_responses(404, 410, also={200: {"content": {"image/svg+xml": {}}}}),
     response_class=Response,
 )
 async def chart(job_id: JobId, farm: Farm) -> Response:

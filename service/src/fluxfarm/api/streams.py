@@ -36,10 +36,8 @@ JSON_LINES = "application/jsonl"
     # Not EventSourceResponse here: the framework would then take the route for a generator of one fixed form.
     response_class=StreamingResponse,
     responses=problem_responses(
-        401,
         404,
         410,
-        422,
         also={
             200: {
                 "description": "Server-sent events, or JSON Lines if `Accept` asks for them.",
@@ -76,7 +74,6 @@ async def events(
     summary="Stream the images",
     response_class=StreamingResponse,
     responses=problem_responses(
-        401,
         404,
         410,
         also={

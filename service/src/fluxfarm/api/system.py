@@ -56,7 +56,7 @@ class HealthOut(BaseModel):
     status: str
 
 
-@router.get("/v1/workers", summary="Engine processes", responses=problem_responses(401))
+@router.get("/v1/workers", summary="Engine processes")
 async def workers(farm: Farm) -> WorkersOut:
     """The engine processes and what they work on."""
     return WorkersOut(
@@ -76,7 +76,7 @@ async def workers(farm: Farm) -> WorkersOut:
     )
 
 
-@router.get("/v1/system", summary="Versions and settings", responses=problem_responses(401))
+@router.get("/v1/system", summary="Versions and settings")
 async def system(farm: Farm) -> SystemOut:
     """Versions, settings and free space, with what the owner should know about them."""
     free = shutil.disk_usage(farm.data).free
@@ -103,7 +103,7 @@ async def system(farm: Farm) -> SystemOut:
 @router.get(
     "/healthz",
     summary="Health",
-    responses=problem_responses(401, also={503: {"model": HealthOut, "description": "It cannot render."}}),
+    responses=problem_responses(also={503: {"model": HealthOut, "description": "It cannot render."}}),
 )
 async def healthz(farm: Farm, response: Response) -> HealthOut:
     """200 while the ledger answers and an engine process starts; for load balancers."""
@@ -114,7 +114,7 @@ async def healthz(farm: Farm, response: Response) -> HealthOut:
     return HealthOut(status="ok")
 
 
-@router.get("/metrics", summary="Metrics", response_class=PlainTextResponse, responses=problem_responses(401))
+@router.get("/metrics", summary="Metrics", response_class=PlainTextResponse)
 async def metrics(farm: Farm) -> PlainTextResponse:
     """Counters and histograms in the Prometheus text format, without labels for single jobs."""
     from fluxfarm.api.metrics import exposition
