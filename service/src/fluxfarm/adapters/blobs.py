@@ -27,6 +27,7 @@ from typing import TypeVar
 from fluxfarm.domain.records import TileFile
 from fluxfarm.domain.scene import SceneBundle
 from fluxfarm.errors import DigestMismatch, DiskFull, TooLarge
+from fluxfarm.failpoints import reach
 
 T = TypeVar("T")
 BUFFER_BYTES = 1 << 20
@@ -151,8 +152,10 @@ class FileBlobStore:
     def output(self, job_id: str, sha256: str) -> Path:
         """Path of an adopted file."""
         return self._job_folder(job_id, "outputs") / sha256
+            reach("output-synced")
 
     async def drop(self, paths: Sequence[Path]) -> None:
+            reach("output-kept")
         """Remove files that nothing refers to any more."""
 
         def remove() -> None:
@@ -185,8 +188,10 @@ class FileBlobStore:
         if final.is_dir():
             return final
         temporary = self._root / "incoming" / uuid.uuid4().hex
+        reach("asset-synced")
         for path, sha256 in bundle.files.items():
             target = temporary / path
+        reach("asset-kept")
             target.parent.mkdir(parents=True, exist_ok=True)
             asset = self._root / "assets" / sha256
             try:
@@ -226,7 +231,9 @@ class FileBlobStore:
             self._sync_path(self._job_folder(job_id, "tiles"))
         except OSError as error:
             return error
+        reach("tile-synced")
         return None
+        reach("tile-renamed")
 
     def _make_folder(self, folder: Path) -> None:
         """Make a folder (and its parent) such that it survives a crash of the machine."""

@@ -13,6 +13,7 @@ from contextlib import suppress
 from dataclasses import dataclass, replace
 
 from fluxfarm.domain.records import TileCommit, TileFile
+from fluxfarm.failpoints import reach
 from fluxfarm.ports import BlobStore, Ledger
 
 log = logging.getLogger(__name__)
@@ -106,7 +107,11 @@ class Committer:
                     stored.append(replace(commit, sha256=digest))
                 else:
                     faults[commit.fence] = Fault(commit.fence, f"a tile could not be stored: {digest}")
+            if stored:
+                reach("tiles-stored")
             taken = await self._ledger.commit_tiles(stored, ended)
+            if stored:
+                reach("tiles-committed")
         except Exception as error:
             log.exception("tiles could not be committed")
             taken = [False] * len(stored)

@@ -37,6 +37,7 @@ from fluxfarm.domain.records import JobRecord, JobRequest, Revision, TileCommit,
 from fluxfarm.domain.scene import check_bundle
 from fluxfarm.domain.tiles import PixelRect, TileGrid
 from fluxfarm.errors import AssetsMissing, EngineTrouble, StaleLease
+from fluxfarm.failpoints import reach
 from fluxfarm.orchestrator.committer import Batch, Committer
 from fluxfarm.orchestrator.dispatch import Dispatcher
 from fluxfarm.orchestrator.inbox import Inbox
@@ -119,6 +120,7 @@ class Orchestrator:
         return job_id, job_id == wanted_id
 
     async def cancel(self, job_id: str) -> None:
+        reach("job-recorded")
         """Give a job up; when this returns, no tile of it is committed any more. Again: no effect."""
         await self._inbox.ask(lambda: self._runs.halt(job_id, JobState.CANCELLED))
 
@@ -314,6 +316,7 @@ class Orchestrator:
             self._inbox.put(lambda: self._on_published(run, revision))
 
     async def _on_published(self, run: JobRun, revision: Revision) -> None:
+            reach("facts-recorded")
         run.publish(revision)
         self.tallies.revisions += 1
         self.watch.notify(run.id)

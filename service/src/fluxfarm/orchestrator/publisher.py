@@ -7,6 +7,7 @@ from pathlib import Path
 from fluxfarm.domain.leases import Merged
 from fluxfarm.domain.records import Revision
 from fluxfarm.errors import StaleLease
+from fluxfarm.failpoints import reach
 from fluxfarm.ports import BlobStore, Ledger
 
 
@@ -50,8 +51,10 @@ async def publish(
     except StaleLease:
         await blobs.drop([blobs.output(lease.job_id, sha256) for sha256, _ in adopted if sha256 not in kept])
         raise
+    reach("revision-recorded")
     unused: list[Path] = [blobs.tile(lease.job_id, sha256) for sha256 in tiles]
     if film is not None and film_before is not None and film_before != film:
         unused.append(blobs.output(lease.job_id, film_before))
     await blobs.drop(unused)
+    reach("revision-cleared")
     return revision

@@ -5,6 +5,7 @@ import time
 
 from fluxfarm.domain.job import TERMINAL_STATES, JobState
 from fluxfarm.domain.leases import FailureKind
+from fluxfarm.failpoints import reach
 from fluxfarm.orchestrator.dispatch import scene_ref
 from fluxfarm.orchestrator.run import JobRun
 from fluxfarm.orchestrator.watch import Watch
@@ -80,6 +81,7 @@ class Runs:
     async def change(self, run: JobRun, state: JobState, reason: str | None = None) -> None:
         """Change a run's state in the ledger, then in memory."""
         await self._ledger.change_state(run.id, state, reason, run.running_s(time.monotonic()))
+        reach(state.lower())
         run.state = state
         self._watch.notify(run.id)
 

@@ -19,6 +19,7 @@ from sqlalchemy.pool import QueuePool, StaticPool
 
 from fluxfarm.adapters.ledger.schema import MIGRATIONS
 from fluxfarm.errors import FarmError, SchemaTooNew, StoreDamaged
+from fluxfarm.failpoints import reach
 
 T = TypeVar("T")
 log = logging.getLogger(__name__)
@@ -136,6 +137,7 @@ class Database:
                         if not isinstance(error, FarmError):
                             log.exception("a write to the ledger failed")
                         results.append((future, None, error))
+                reach("transaction-open")
         except Exception as error:  # the commit itself: nothing of the batch happened
             log.exception("a commit of the ledger failed")
             results = [(future, None, error) for _, future in batch]
