@@ -56,12 +56,22 @@ async def start_services(settings: Settings, stack: AsyncExitStack) -> Services:
     durable = settings.sync == "full"
     ledger = SqliteLedger(settings.data / "ledger.sqlite3", settings.journal, durable)
     stack.callback(ledger.close)
-    blobs = FileBlobStore(settings.data, settings.max_asset_bytes, durable)
+    blobs = FileBlobStore(settings.data, settings.max_asset_bytes, durable, settings.least_free_bytes)
     stack.callback(blobs.close)
     kept = {sha256 for record in await ledger.jobs() for sha256 in record.request.bundle.files.values()}
     swept = data_folder.sweep(settings.data, await ledger.files(), kept, settings.keep_assets_hours * 3600)
-    pool = LocalPool(program, settings.workers, settings.threads_per_worker, settings.stall_seconds)
-    limits = OrchestratorSettings(settings.tile_size, settings.lease_seconds, settings.max_pixels)
+    engine = EngineCommand(
+        program,
+        settings.threads_per_worker,
+        settings.stall_seconds,
+        settings.data,
+        settings.memory_per_worker,
+        settings.sandbox == "required",
+    )
+    pool = LocalPool(engine, settings.workers)
+    limits = OrchestratorSettings(
+        settings.tile_size, settings.lease_seconds, settings.max_pixels, settings.least_free_bytes
+    )
     orchestrator = Orchestrator(ledger, blobs, pool, limits)
     stack.push_async_callback(orchestrator.close)
     await orchestrator.start()

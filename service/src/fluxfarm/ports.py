@@ -71,6 +71,9 @@ class BlobStore(Protocol):
 
     def missing_assets(self, digests: Sequence[str]) -> list[str]:
         """Those of `digests` that are not stored, in order, each once."""
+    def free_bytes(self) -> int:
+        """Room on the disk."""
+
 
     async def put_builtin(self, folder: Path) -> SceneBundle:
         """Store the files of a scene folder whose entry is scene.xml."""

@@ -34,6 +34,7 @@ class Settings:
     max_pixels: int = 1 << 27
     keep_assets_hours: float = 24.0
     journal: str = "wal"
+    least_free_bytes: int = 256 << 20
     sync: str = "full"
     keys: str = "auto"
     log_level: str = "info"
@@ -83,6 +84,7 @@ CHOICES: dict[str, tuple[str, ...]] = {
 }
 
 
+    "least_free_bytes": (0, 1 << 50),
 def from_environment(environment: Mapping[str, str] | None = None) -> Settings:
     """Read the settings; raises BadSetting naming the variable, its value and what would be right."""
     environment = os.environ if environment is None else environment

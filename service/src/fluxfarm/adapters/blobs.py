@@ -36,12 +36,13 @@ BUILTIN_ENTRY = "scene.xml"
 
 
 class FileBlobStore:
-    """The blob store in the folder `root`; uploads are at most `max_asset_bytes` long.
+    """The blob store in the folder `root`; uploads are at most `max_asset_bytes` long, and leave `least_free_bytes`.
 
     If not `durable`, nothing is synced: a crash of the machine may damage it, one of the service may not."""
 
-    def __init__(self, root: Path, max_asset_bytes: int, durable: bool = True) -> None:
+    def __init__(self, root: Path, max_asset_bytes: int, durable: bool = True, least_free_bytes: int = 0) -> None:
         self._root = root
+        self._least_free_bytes = least_free_bytes
         self._max_asset_bytes = max_asset_bytes
         self._durable = durable
         self._work = ThreadPoolExecutor(4, thread_name_prefix="blobs")
@@ -58,6 +59,10 @@ class FileBlobStore:
 
     async def put_asset(self, sha256: str, chunks: AsyncIterable[bytes]) -> bool:
         """Store an upload; True if it is new. Raises DigestMismatch, TooLarge or DiskFull."""
+        if (free := self.free_bytes()) < self._least_free_bytes:
+            raise DiskFull(
+                f"asset {sha256}: {free} bytes free in the data folder, expected at least {self._least_free_bytes}"
+            )
         temporary = self._root / "incoming" / uuid.uuid4().hex
         hasher, size, buffer = hashlib.sha256(), 0, bytearray()
         file = await self._in_thread(lambda: temporary.open("wb", buffering=0))
@@ -86,6 +91,10 @@ class FileBlobStore:
         finally:
             file.close()
             temporary.unlink(missing_ok=True)
+
+    def free_bytes(self) -> int:
+        """Room on the disk."""
+        return shutil.disk_usage(self._root).free
 
     def missing_assets(self, digests: Sequence[str]) -> list[str]:
         """Those of `digests` that are not stored, in order, each once."""
@@ -143,8 +152,10 @@ class FileBlobStore:
             sha256, size = file_digest(scratch), scratch.stat().st_size
             folder = self._job_folder(job_id, "outputs")
             self._make_folder(folder)
+            reach("output-synced")
             scratch.replace(folder / sha256)
             self._sync_path(folder)
+            reach("output-kept")
             return sha256, size
 
         return await self._in_thread(move)
@@ -152,10 +163,8 @@ class FileBlobStore:
     def output(self, job_id: str, sha256: str) -> Path:
         """Path of an adopted file."""
         return self._job_folder(job_id, "outputs") / sha256
-            reach("output-synced")
 
     async def drop(self, paths: Sequence[Path]) -> None:
-            reach("output-kept")
         """Remove files that nothing refers to any more."""
 
         def remove() -> None:
@@ -179,8 +188,10 @@ class FileBlobStore:
             return False
         temporary.chmod(0o444)
         self._sync_path(temporary)
+        reach("asset-synced")
         temporary.replace(final)
         self._sync_path(final.parent)
+        reach("asset-kept")
         return True
 
     def _lay_out(self, bundle: SceneBundle) -> Path:
@@ -188,10 +199,8 @@ class FileBlobStore:
         if final.is_dir():
             return final
         temporary = self._root / "incoming" / uuid.uuid4().hex
-        reach("asset-synced")
         for path, sha256 in bundle.files.items():
             target = temporary / path
-        reach("asset-kept")
             target.parent.mkdir(parents=True, exist_ok=True)
             asset = self._root / "assets" / sha256
             try:
@@ -222,7 +231,9 @@ class FileBlobStore:
             sha256 = hashlib.file_digest(file, "sha256").hexdigest()
         final = self.tile(tile.job_id, sha256)
         self._make_folder(final.parent)
+        reach("tile-synced")
         tile.path.replace(final)
+        reach("tile-renamed")
         return sha256
 
     def _sync_tiles(self, job_id: str) -> OSError | None:
@@ -231,9 +242,7 @@ class FileBlobStore:
             self._sync_path(self._job_folder(job_id, "tiles"))
         except OSError as error:
             return error
-        reach("tile-synced")
         return None
-        reach("tile-renamed")
 
     def _make_folder(self, folder: Path) -> None:
         """Make a folder (and its parent) such that it survives a crash of the machine."""

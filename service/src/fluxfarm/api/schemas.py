@@ -162,7 +162,7 @@ class JobOut(BaseModel):
     id: str
     name: str
     state: JobState
-    reason: str | None = Field(description="Why the job failed.")
+    reason: str | None = Field(description="Why the job failed, or waits without its owner's wish.")
     created_at: str
     owner: str | None = Field(description="Id of the API key that submitted it; absent where none are asked for.")
     scene: dict[str, Any]

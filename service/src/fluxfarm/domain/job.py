@@ -26,7 +26,8 @@ STATE_SENTENCES: dict[JobState, str] = {
     JobState.PREPARING: "An engine process reads and compiles the scene.",
     JobState.RUNNING: "Tiles are being rendered; every finished pass publishes a revision.",
     JobState.FINALIZING: "All samples are taken; the last revision is being written.",
-    JobState.PAUSED: "The owner stopped the job for now; what was committed is kept and `resume` goes on from there.",
+    JobState.PAUSED: "The owner stopped the job for now, or it waits for room on the disk and goes on by itself; "
+    "`reason` says so. What was committed is kept.",
     JobState.SUCCEEDED: "The goal or a limit was reached; the newest revision is the result.",
     JobState.FAILED: "The job cannot go on; `reason` says why. Revisions published before stay.",
     JobState.CANCELLED: "The owner gave the job up; no tile is committed any more. Revisions published before stay.",

@@ -39,6 +39,7 @@ from fluxfarm.domain.tiles import PixelRect, TileGrid
 from fluxfarm.errors import AssetsMissing, EngineTrouble, StaleLease
 from fluxfarm.failpoints import reach
 from fluxfarm.orchestrator.committer import Batch, Committer
+from fluxfarm.orchestrator.disk_guard import DiskGuard
 from fluxfarm.orchestrator.dispatch import Dispatcher
 from fluxfarm.orchestrator.inbox import Inbox
 from fluxfarm.orchestrator.publisher import publish
@@ -54,17 +55,20 @@ T = TypeVar("T")
 log = logging.getLogger(__name__)
 
 TILE_IMAGE_TIMEOUT_S = 30.0
+DISK_LOOK_S = 1.0
 # Under load the inbox is never empty, and the engine processes must not wait for that.
 MESSAGES_PER_DISPATCH = 32
 
 
 @dataclass(frozen=True, slots=True)
 class OrchestratorSettings:
-    """`tile_size` in pixels; `lease_s` is how long a lease should take; frames beyond `max_pixels` are refused."""
+    """`tile_size` in pixels; `lease_s` is how long a lease should take; frames beyond `max_pixels` are refused; with
+    less than `least_free_bytes` on the disk jobs wait."""
 
     tile_size: int = 64
     lease_s: float = 1.0
     max_pixels: int = 1 << 27
+    least_free_bytes: int = 256 << 20
 
 
 class Orchestrator:
@@ -82,6 +86,7 @@ class Orchestrator:
         self.watch = Watch()
         self.tallies = Tallies()
         self._runs = Runs(ledger, blobs, pool, self.watch)
+        self._disk = DiskGuard(ledger, blobs, self._runs, settings.least_free_bytes)
 
     # ---- life ----
 
@@ -90,7 +95,7 @@ class Orchestrator:
         self._dispatcher.next_fence = await self._ledger.highest_fence() + 1
         await self._runs.adopt_all()
         await self._pool.start()
-        for work in (self._handle_inbox(), self._hear_outcomes(), self._committer.run()):
+        for work in (self._handle_inbox(), self._hear_outcomes(), self._committer.run(), self._watch_disk()):
             self._background(work)
 
     async def close(self) -> None:
@@ -194,6 +199,11 @@ class Orchestrator:
             else:
                 self._inbox.put(lambda outcome=outcome: self._on_outcome(outcome))  # type: ignore[misc]
 
+    async def _watch_disk(self) -> None:
+        while True:
+            self._inbox.put(self._disk.look)
+            await asyncio.sleep(DISK_LOOK_S)
+
     def _report_batch(self, batch: Batch) -> None:
         self._inbox.put(lambda: self._on_batch(batch))
 
@@ -276,10 +286,13 @@ class Orchestrator:
             if run is not None and (undone := run.end_lease(fence)):
                 self._background(self._blobs.drop(undone))
         for run, reason in faults.values():
-            await self._runs.count_failure(run, FailureKind.RESOURCE, reason)
+            if not self._disk.full:
+                await self._runs.count_failure(run, FailureKind.RESOURCE, reason)
         for job_id in {commit.job_id for commit in batch.commits}:
             self.watch.notify(job_id)
 
+        if faults:
+            await self._disk.look()
     async def _on_prepared(self, run: JobRun, outcome: Prepared) -> None:
         facts, request = outcome.facts, run.request
         frame = PixelRect(0, 0, facts.width, facts.height)
@@ -330,6 +343,12 @@ class Orchestrator:
         elif kind is None or not await self._runs.count_failure(run, kind, message):
             await self._take_back(run, lease)
             return
+        if kind is FailureKind.RESOURCE:
+            await self._disk.look()
+            kind = None if self._disk.full else kind
+            if self._runs.get(run.id) is None:  # it waits for room now
+                await self._blobs.drop(_outputs(lease))
+                return
         await self._blobs.drop(_outputs(lease))
 
     async def _take_back(self, run: JobRun, lease: Lease) -> None:

@@ -52,14 +52,14 @@ class Runs:
         self._runs[job_id] = run
         self._watch.notify(job_id)
 
-    async def halt(self, job_id: str, state: JobState) -> None:
-        """Stop a job by cancelling or pausing it. Again: no effect."""
+    async def halt(self, job_id: str, state: JobState, reason: str | None = None) -> None:
+        """Stop a job by cancelling or pausing it, for a reason if it was not its owner. Again: no effect."""
         record = await self._ledger.job(job_id)
         if record.state is state:
             return
         run = self._runs.get(job_id)
         running_s = None if run is None else run.running_s(time.monotonic())
-        await self._ledger.change_state(job_id, state, None, running_s)
+        await self._ledger.change_state(job_id, state, reason, running_s)
         self._forget(job_id)
 
     async def resume(self, job_id: str) -> None:
