@@ -104,4 +104,8 @@ def test_system_workers_health_and_metrics_answer(client: Client) -> None:
     metrics = client.http.get("/metrics").text
     assert "fluxfarm_tiles_committed_total 48.0" in metrics
     assert 'fluxfarm_jobs{state="SUCCEEDED"} 1.0' in metrics
+    assert f"fluxfarm_samples_total {float(client.job(job_id)['progress']['samples_done'])}" in metrics
+    assert "fluxfarm_rays_total " in metrics
+    assert 'fluxfarm_queue_seconds_bucket{le="+Inf"} 1.0' in metrics
+    assert "fluxfarm_error_reached_count " in metrics
     assert job_id not in metrics

@@ -8,7 +8,7 @@ from prometheus_client.core import CounterMetricFamily, GaugeMetricFamily, Histo
 
 from fluxfarm.api.deps import Services
 from fluxfarm.domain.job import JobState
-from fluxfarm.orchestrator.tallies import BUCKETS_S, Durations
+from fluxfarm.orchestrator.tallies import Histogram
 
 
 async def exposition(farm: Services) -> str:
@@ -43,10 +43,14 @@ class _Collector:
         yield CounterMetricFamily("fluxfarm_revisions", "Revisions published.", tallies.revisions)
         yield _histogram("fluxfarm_tile_seconds", "Time of a tile on one thread.", tallies.tile_seconds)
         yield _histogram("fluxfarm_commit_seconds", "Time to commit a batch of tiles.", tallies.commit_seconds)
+        yield _histogram("fluxfarm_queue_seconds", "Time of a job until its work begins.", tallies.queue_seconds)
+        yield _histogram("fluxfarm_error_reached", "Relative error that a job ended with.", tallies.errors)
+        yield CounterMetricFamily("fluxfarm_samples", "Camera samples of committed tiles.", tallies.samples)
+        yield CounterMetricFamily("fluxfarm_rays", "Rays of committed tiles.", tallies.rays)
 
 
-def _histogram(name: str, text: str, durations: Durations) -> Metric:
-    """Durations with cumulative buckets, as Prometheus wants them."""
-    bounds = [*(f"{bound:g}" for bound in BUCKETS_S), "+Inf"]
-    buckets = list(zip(bounds, (float(count) for count in accumulate(durations.counts)), strict=True))
-    return HistogramMetricFamily(name, text, buckets=buckets, sum_value=durations.total_s)
+def _histogram(name: str, text: str, found: Histogram) -> Metric:
+    """With cumulative buckets, as Prometheus wants them."""
+    bounds = [*(f"{bound:g}" for bound in found.bounds), "+Inf"]
+    buckets = list(zip(bounds, (float(count) for count in accumulate(found.counts)), strict=True))
+    return HistogramMetricFamily(name, text, buckets=buckets, sum_value=found.total)

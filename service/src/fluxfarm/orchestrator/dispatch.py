@@ -29,6 +29,7 @@ from fluxfarm.domain.records import AUTO, JobRequest
 from fluxfarm.errors import EngineTrouble
 from fluxfarm.orchestrator.committer import Committer
 from fluxfarm.orchestrator.run import JobRun
+from fluxfarm.orchestrator.tallies import Tallies
 from fluxfarm.ports import BlobStore, Ledger, WorkerInfo, WorkerPool
 
 WINDOW = 2
@@ -40,9 +41,16 @@ class Dispatcher:
     """Hands out leases; owned and called by the orchestrator's task alone."""
 
     def __init__(
-        self, ledger: Ledger, blobs: BlobStore, pool: WorkerPool, committer: Committer, lease_s: float
+        self,
+        ledger: Ledger,
+        blobs: BlobStore,
+        pool: WorkerPool,
+        committer: Committer,
+        tallies: Tallies,
+        lease_s: float,
     ) -> None:
         self._ledger = ledger
+        self._tallies = tallies
         self._blobs = blobs
         self._pool = pool
         self._committer = committer
@@ -113,6 +121,7 @@ class Dispatcher:
         if run.state is JobState.QUEUED:
             await self._ledger.change_state(run.id, JobState.PREPARING)
             run.state = JobState.PREPARING
+            self._tallies.queue_seconds.add(max(time.time() - run.created_at, 0.0))
             lease = PrepareLease(self.new_fence(), run.id, run.scene)
             run.single_lease = lease.fence
         elif run.state in (JobState.RUNNING, JobState.FINALIZING):

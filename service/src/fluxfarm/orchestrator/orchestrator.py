@@ -81,10 +81,10 @@ class Orchestrator:
         self._settings = settings
         self._inbox = Inbox()
         self._committer = Committer(ledger, blobs, self._report_batch)
-        self._dispatcher = Dispatcher(ledger, blobs, pool, self._committer, settings.lease_s)
+        self.tallies = Tallies()
+        self._dispatcher = Dispatcher(ledger, blobs, pool, self._committer, self.tallies, settings.lease_s)
         self._tasks: set[asyncio.Task[None]] = set()
         self.watch = Watch()
-        self.tallies = Tallies()
         self._runs = Runs(ledger, blobs, pool, self.watch)
         self._disk = DiskGuard(ledger, blobs, self._runs, settings.least_free_bytes)
 
@@ -120,12 +120,12 @@ class Orchestrator:
             raise AssetsMissing({path: sha for path, sha in request.bundle.files.items() if sha in missing})
         wanted_id = str(uuid.uuid4())
         job_id = await self._ledger.add_job(wanted_id, request, key, body_sha256, owner)
+        reach("job-recorded")
         if job_id == wanted_id:
             await self._inbox.ask(lambda: self._runs.adopt(job_id))
         return job_id, job_id == wanted_id
 
     async def cancel(self, job_id: str) -> None:
-        reach("job-recorded")
         """Give a job up; when this returns, no tile of it is committed any more. Again: no effect."""
         await self._inbox.ask(lambda: self._runs.halt(job_id, JobState.CANCELLED))
 
@@ -215,6 +215,8 @@ class Orchestrator:
                 await self._runs.change(run, JobState.FINALIZING)
             if run.state is JobState.FINALIZING and run.all_merged:
                 await self._runs.finish(run)
+                if run.newest is not None and run.newest.error_noise is not None:
+                    self.tallies.errors.add(run.newest.error_noise)
 
     # ---- outcomes ----
 
@@ -275,6 +277,9 @@ class Orchestrator:
     async def _on_batch(self, batch: Batch) -> None:
         for commit, taken in zip(batch.commits, batch.taken, strict=True):
             run = self._runs.get(commit.job_id)
+            if taken:
+                self.tallies.samples += commit.samples
+                self.tallies.rays += commit.rays
             if taken and run is not None:
                 run.commit(commit.fence, commit.pass_index, commit.tile, commit.sha256)
         self.tallies.tiles += sum(batch.taken)
@@ -285,14 +290,14 @@ class Orchestrator:
             run = self._runs.of_lease(fence)
             if run is not None and (undone := run.end_lease(fence)):
                 self._background(self._blobs.drop(undone))
+        if faults:
+            await self._disk.look()
         for run, reason in faults.values():
             if not self._disk.full:
                 await self._runs.count_failure(run, FailureKind.RESOURCE, reason)
         for job_id in {commit.job_id for commit in batch.commits}:
             self.watch.notify(job_id)
 
-        if faults:
-            await self._disk.look()
     async def _on_prepared(self, run: JobRun, outcome: Prepared) -> None:
         facts, request = outcome.facts, run.request
         frame = PixelRect(0, 0, facts.width, facts.height)
@@ -311,6 +316,7 @@ class Orchestrator:
             facts = replace(facts, crop=crop)
             grid = TileGrid(crop, self._settings.tile_size if request.goal.rel_error is None else ERROR_TILE)
             await self._ledger.record_facts(outcome.lease.fence, run.id, facts, grid)
+            reach("facts-recorded")
             run.end_lease(outcome.lease.fence)
             run.start(facts, grid, None, time.monotonic())
             self.watch.notify(run.id)
@@ -329,7 +335,6 @@ class Orchestrator:
             self._inbox.put(lambda: self._on_published(run, revision))
 
     async def _on_published(self, run: JobRun, revision: Revision) -> None:
-            reach("facts-recorded")
         run.publish(revision)
         self.tallies.revisions += 1
         self.watch.notify(run.id)
@@ -338,17 +343,17 @@ class Orchestrator:
 
     async def _on_fault(self, run: JobRun, lease: Lease, kind: FailureKind | None, message: str) -> None:
         """A lease came to nothing; `kind` is None if that was not the job's fault."""
-        if kind is FailureKind.SCENE:
-            await self._runs.fail(run, message)
-        elif kind is None or not await self._runs.count_failure(run, kind, message):
-            await self._take_back(run, lease)
-            return
         if kind is FailureKind.RESOURCE:
             await self._disk.look()
             kind = None if self._disk.full else kind
             if self._runs.get(run.id) is None:  # it waits for room now
                 await self._blobs.drop(_outputs(lease))
                 return
+        if kind is FailureKind.SCENE:
+            await self._runs.fail(run, message)
+        elif kind is None or not await self._runs.count_failure(run, kind, message):
+            await self._take_back(run, lease)
+            return
         await self._blobs.drop(_outputs(lease))
 
     async def _take_back(self, run: JobRun, lease: Lease) -> None:

@@ -3,28 +3,39 @@
 from bisect import bisect_left
 from dataclasses import dataclass, field
 
-BUCKETS_S = (0.001, 0.005, 0.02, 0.1, 0.5, 2.0, 10.0)
+SECONDS = (0.001, 0.005, 0.02, 0.1, 0.5, 2.0, 10.0)
+LONG_SECONDS = (0.1, 1.0, 10.0, 60.0, 600.0, 3600.0)
+ERRORS = (0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5)
 
 
 @dataclass(slots=True)
-class Durations:
-    """A histogram of durations in seconds, with upper bounds BUCKETS_S and one bucket above."""
+class Histogram:
+    """How many values lie below each of `bounds`, and in one bucket above them."""
 
-    counts: list[int] = field(default_factory=lambda: [0] * (len(BUCKETS_S) + 1))
-    total_s: float = 0.0
+    bounds: tuple[float, ...]
+    counts: list[int] = field(init=False)
+    total: float = 0.0
 
-    def add(self, seconds: float) -> None:
-        """Count one duration."""
-        self.counts[bisect_left(BUCKETS_S, seconds)] += 1
-        self.total_s += seconds
+    def __post_init__(self) -> None:
+        self.counts = [0] * (len(self.bounds) + 1)
+
+    def add(self, value: float) -> None:
+        """Count one value."""
+        self.counts[bisect_left(self.bounds, value)] += 1
+        self.total += value
 
 
 @dataclass(slots=True)
 class Tallies:
-    """What the orchestrator counts."""
+    """What the orchestrator counts; `queue_seconds` is from the submission of a job to the beginning of its work,
+    `errors` the estimated relative errors that jobs ended with."""
 
     tiles: int = 0
     stale_tiles: int = 0
     revisions: int = 0
-    tile_seconds: Durations = field(default_factory=Durations)
-    commit_seconds: Durations = field(default_factory=Durations)
+    samples: int = 0
+    rays: int = 0
+    tile_seconds: Histogram = field(default_factory=lambda: Histogram(SECONDS))
+    commit_seconds: Histogram = field(default_factory=lambda: Histogram(SECONDS))
+    queue_seconds: Histogram = field(default_factory=lambda: Histogram(LONG_SECONDS))
+    errors: Histogram = field(default_factory=lambda: Histogram(ERRORS))
