@@ -2,12 +2,12 @@
 SHELL := bash
 .SHELLFLAGS := -euo pipefail -c
 .DEFAULT_GOAL := build
-.PHONY: build demo test test-fast lint format bench chart stability asan tsan clean FORCE
+.PHONY: build demo test test-fast lint format bench chart stability asan tsan fuzz clean FORCE
 
 VENV := .venv
 PYTHON := $(VENV)/bin/python
 PYTEST := $(PYTHON) -m pytest -c service/pyproject.toml --rootdir .
-CPP_FILES = $(shell git ls-files 'engine/*.cpp' 'engine/*.h' 'tests/engine/*.cpp' 'tests/engine/*.h' 'tests/benchmarks/*.cpp' 'tests/benchmarks/*.h')
+CPP_FILES = $(shell git ls-files 'engine/*.cpp' 'engine/*.h' 'tests/engine/*.cpp' 'tests/engine/*.h' 'tests/benchmarks/*.cpp' 'tests/benchmarks/*.h' 'tests/fuzz/*.cpp' 'tests/fuzz/*.h')
 SCENES_DATA := $(or $(FLUXFARM_SCENES_DATA),../shared/scenes-data)
 
 # Build everything: .venv/bin/fluxfarm and .venv/bin/fluxfarm-engine exist afterwards.
@@ -70,6 +70,14 @@ asan tsan: $(VENV)/.ready
 	cd engine && cmake --preset $(PRESET)
 	cmake --build build/$(PRESET)
 	cd engine && ctest --preset $(PRESET)
+
+# Readers of scenes on made-up input, under the address and undefined-behaviour sanitizers: seconds of each, and which ones.
+FUZZ := 600
+fuzz: $(VENV)/.ready
+	tools/setup-apt fuzz
+	cd engine && cmake --preset fuzz
+	cmake --build build/fuzz --target fuzz_xml fuzz_json fuzz_gltf fuzz_ply fuzz_obj fuzz_protocol
+	tests/fuzz/run build/fuzz $(FUZZ)
 
 clean:
 	rm -rf build out $(VENV)
