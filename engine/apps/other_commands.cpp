@@ -1,6 +1,7 @@
 // fluxfarm-engine plan, info, worker: the short commands.
 #include <atomic>
 #include <cstdio>
+#include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -10,10 +11,12 @@
 #include "method_options.h"
 #include "scene_options.h"
 #include "support/build_info.h"
+#include "support/error.h"
 #include "worker/build_id.h"
 #include "worker/messages.h"
 #include "worker/pilot.h"
 #include "worker/plan.h"
+#include "worker/sandbox.h"
 #include "worker/worker_process.h"
 
 namespace fluxfarm {
@@ -85,6 +88,22 @@ void print_plan(const PlanOptions& options) {
   }
 }
 
+struct WorkerOptions {
+  int fd = -1, threads = 0;
+  std::filesystem::path data;
+  std::uint64_t memory_bytes = 0;
+  bool require_sandbox = false;
+};
+
+void work(const WorkerOptions& options) {
+  std::vector<std::string> missing = {"not asked for"};
+  if (!options.data.empty()) {
+    missing = enter_sandbox({{options.data / "scenes", options.data / "assets"}, {options.data / "jobs"}, options.memory_bytes});
+  }
+  if (options.require_sandbox && !missing.empty()) throw ResourceError("the sandbox is not whole, without: " + missing.front());
+  run_worker(options.fd, resolve_threads(options.threads), missing);
+}
+
 }  // namespace
 
 void add_info_command(CLI::App& app) {
@@ -108,11 +127,13 @@ void add_plan_command(CLI::App& app) {
 
 void add_worker_command(CLI::App& app) {
   CLI::App* command = app.add_subcommand("worker", "Serve render requests on an inherited socket (used by the service)");
-  const auto fd = std::make_shared<int>(-1);
-  const auto threads = std::make_shared<int>(0);
-  command->add_option("--fd", *fd, "Number of the inherited socket")->required()->check(CLI::NonNegativeNumber);
-  command->add_option("--threads", *threads, "Render threads; default: all cores")->check(CLI::Range(1, 1024));
-  command->callback([fd, threads] { run_worker(*fd, resolve_threads(*threads)); });
+  const auto options = std::make_shared<WorkerOptions>();
+  command->add_option("--fd", options->fd, "Number of the inherited socket")->required()->check(CLI::NonNegativeNumber);
+  command->add_option("--threads", options->threads, "Render threads; default: all cores")->check(CLI::Range(1, 1024));
+  command->add_option("--data", options->data, "The service's data folder: nothing else is read or written");
+  command->add_option("--memory", options->memory_bytes, "Most bytes to take; 0: any");
+  command->add_flag("--require-sandbox", options->require_sandbox, "Refuse to run where the kernel cannot hold that");
+  command->callback([options] { work(*options); });
 }
 
 }  // namespace fluxfarm

@@ -1,11 +1,19 @@
 """Bad scenes through the real service and engine: each fails its own job with one clear reason, and nothing else."""
 
+import json
+import os
 import signal
 import struct
+import zlib
 from collections.abc import Iterator
+from pathlib import Path
 
 import pytest
+from conftest import same_bits
 from farm import Farm
+
+# Of the service's memory over all bad scenes a second time.
+MOST_GROWTH = 4 << 20
 
 FILM = '<film type="hdrfilm"><integer name="width" value="8"/><integer name="height" value="8"/></film>'
 SENSOR = f'<sensor type="perspective">{FILM}</sensor>'
@@ -38,8 +46,34 @@ BINARY_HEAD = (
     b"element face 1\nproperty list uchar int vertex_indices\nend_header\n"
 )
 NAN_PLY = BINARY_HEAD + struct.pack("<9fB3i", 0, 0, 0, 1, float("nan"), 0, 0, 1, 0, 3, 0, 1, 2)
+RING = json.dumps(
+    {"asset": {"version": "2.0"}, "nodes": [{"children": [1]}, {"children": [0]}], "scenes": [{"nodes": [0]}]}
+).encode()
+LYING_BUFFER = json.dumps(
+    {
+        "asset": {"version": "2.0"},
+        "nodes": [{"mesh": 0}],
+        "scenes": [{"nodes": [0]}],
+        "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
+        "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3"}],
+        "bufferViews": [{"buffer": 0, "byteLength": 4_000_000_000}],
+        "buffers": [{"byteLength": 4_000_000_000, "uri": "data:application/octet-stream;base64,AAAA"}],
+    }
+).encode()
+GLTF_SHAPE = '<shape type="gltf"><string name="filename" value="a.gltf"/></shape>'
 HDR_BOMB = b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 60000 +X 60000\n"
 BOMB = '<!DOCTYPE s [<!ENTITY a "aaaaaaaa"><!ENTITY b "&a;&a;&a;&a;">]>' + scene(SENSOR, LAMP)
+
+
+def png_bomb(side: int) -> bytes:
+    """A PNG that claims so many pixels each way, and begins well."""
+
+    def chunk(name: bytes, data: bytes) -> bytes:
+        return struct.pack(">I", len(data)) + name + data + struct.pack(">I", zlib.crc32(name + data))
+
+    head = chunk(b"IHDR", struct.pack(">IIBBBBB", side, side, 8, 6, 0, 0, 0))
+    return b"\x89PNG\r\n\x1a\n" + head + chunk(b"IDAT", zlib.compress(bytes(1 << 20))) + chunk(b"IEND", b"")
+
 
 # name, files beside the scene, scene text, words that the reason must have
 CASES = [
@@ -91,6 +125,26 @@ CASES = [
     ("huge size", {}, scene(SENSOR.replace('value="8"', 'value="1000000"'), LAMP), ["scene.xml:2", "1000000"]),
     ("deep nesting", {}, scene('<bsdf type="twosided">' * 100_000), ["scene.xml"]),
     ("entity bomb", {}, BOMB, ["scene.xml"]),
+    (
+        "file that includes itself",
+        {},
+        scene(SENSOR, LAMP, '<include filename="scene.xml"/>'),
+        ["scene.xml:4", "include"],
+    ),
+    (
+        "image that is a bomb",
+        {"a.png": png_bomb(65_000)},
+        scene(SENSOR, LAMP, painted("a.png")),
+        ["a.png", "65000 x 65000"],
+    ),
+    (
+        "index beyond all numbers",
+        {"a.obj": b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 99999999999999999999\n"},
+        scene(SENSOR, LAMP, '<shape type="obj"><string name="filename" value="a.obj"/></shape>'),
+        ["a.obj:4", "99999999999999999999"],
+    ),
+    ("nodes in a ring", {"a.gltf": RING}, scene(SENSOR, LAMP, GLTF_SHAPE), ["a.gltf", "nodes"]),
+    ("buffer that lies", {"a.gltf": LYING_BUFFER}, scene(SENSOR, LAMP, GLTF_SHAPE), ["a.gltf", "4000000000"]),
 ]
 
 
@@ -128,5 +182,34 @@ def test_scene_without_light_is_black_with_a_warning(farm: Farm) -> None:
     assert any("light" in warning for warning in job["warnings"])
 
 
-def test_service_still_renders_after_all_of_them(farm: Farm) -> None:
-    farm.client.succeed(submit(farm, scene(SENSOR, LAMP, '<shape type="sphere"/>'), {}))
+def test_bad_scenes_change_no_other_job_and_leave_nothing_in_the_service(farm: Farm) -> None:
+    good = scene(SENSOR, LAMP, '<shape type="sphere"/>')
+
+    def all_cases() -> None:
+        for _, files, text, _ in CASES:
+            assert farm.client.finish(submit(farm, text, files))["state"] == "FAILED"
+
+    undisturbed = submit(farm, good, {})
+    farm.client.succeed(undisturbed)
+    all_cases()  # whatever is kept for the next time is kept now
+    before = holds(farm)
+    disturbed = submit(farm, good, {})
+    all_cases()
+    farm.client.succeed(disturbed)
+    assert same_pixels(farm, undisturbed, disturbed)
+    after = holds(farm)
+    assert after["open files"] <= before["open files"] + 4
+    assert after["bytes"] <= before["bytes"] + MOST_GROWTH
+
+
+def holds(farm: Farm) -> dict[str, int]:
+    """What the service process holds."""
+    process = Path(f"/proc/{farm.service.process.pid}")
+    pages = int((process / "statm").read_text().split()[1])
+    return {"open files": len(list((process / "fd").iterdir())), "bytes": pages * os.sysconf("SC_PAGE_SIZE")}
+
+
+def same_pixels(farm: Farm, *jobs: str) -> bool:
+    """Whether two jobs have the same layers; the files name their jobs."""
+    a, b = (farm.layers(job_id) for job_id in jobs)
+    return same_bits(a, b)

@@ -31,7 +31,7 @@ from pathlib import Path
 
 from fluxfarm.adapters.protocol import engine_pb2 as pb
 
-PROTOCOL_VERSION = 5
+PROTOCOL_VERSION = 6
 EXR_MAGIC = b"\x76\x2f\x31\x01"
 PNG_MAGIC = b"\x89PNG\r\n\x1a\n"
 
@@ -224,6 +224,9 @@ def main() -> None:
     parser.add_argument("command", choices=["worker", "info"])
     parser.add_argument("--fd", type=int)
     parser.add_argument("--threads", type=int)
+    parser.add_argument("--data", type=Path)
+    parser.add_argument("--memory", type=int)
+    parser.add_argument("--require-sandbox", action="store_true")
     parser.add_argument("--json", action="store_true")
     arguments = parser.parse_args()
     if arguments.command == "info":

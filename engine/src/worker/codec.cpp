@@ -85,6 +85,7 @@ void encode(const HelloReply& r, v1::Reply& out) {
   m.set_engine_build(r.engine_build);
   m.set_threads(static_cast<std::uint32_t>(r.threads));
   m.set_pid(static_cast<std::uint32_t>(getpid()));
+  for (const std::string& missing : r.sandbox_missing) m.add_sandbox_missing(missing);
 }
 
 void encode(const SceneLoadedReply& r, v1::Reply& out) {

@@ -15,7 +15,7 @@
 
 namespace fluxfarm {
 
-inline constexpr std::uint32_t kProtocolVersion = 5;
+inline constexpr std::uint32_t kProtocolVersion = 6;
 
 // ---------------------------------------------------------------- requests
 
@@ -90,6 +90,7 @@ struct Request {
 struct HelloReply {
   std::string engine_build;
   int threads = 1;
+  std::vector<std::string> sandbox_missing;  // of enter_sandbox
 };
 
 struct SceneLoadedReply {

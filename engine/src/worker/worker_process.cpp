@@ -64,8 +64,8 @@ class Worker {
  public:
   Worker(int fd, int threads) : socket_(fd), threads_(threads), scenes_(kKeptScenes), passes_(kKeptPasses) {}
 
-  int run() {
-    reply(0, HelloReply{engine_build_id(), threads_});
+  int run(const std::vector<std::string>& sandbox_missing) {
+    reply(0, HelloReply{engine_build_id(), threads_, sandbox_missing});
     for (int i = 0; i < threads_; ++i) {
       std::thread([this] {
         prepare_render_thread();
@@ -261,10 +261,10 @@ class Worker {
 
 }  // namespace
 
-int run_worker(int fd, int threads) {
+int run_worker(int fd, int threads, const std::vector<std::string>& sandbox_missing) {
   // Never destroyed: render threads use it until the process ends.
   auto* worker = new Worker(fd, threads);
-  const int status = worker->run();
+  const int status = worker->run(sandbox_missing);
   std::fflush(nullptr);
   _exit(status);
 }

@@ -4,9 +4,13 @@
 // merges before tiles, so that what is finished is shown first. End of file on the socket ends the process.
 #pragma once
 
+#include <string>
+#include <vector>
+
 namespace fluxfarm {
 
-// Returns the exit status of the process: 0 at end of file, 1 when the peer broke the protocol.
-int run_worker(int fd, int threads);
+// Says first what of the sandbox does not hold. Returns the exit status of the process: 0 at end of file, 1 when the peer broke the
+// protocol.
+int run_worker(int fd, int threads, const std::vector<std::string>& sandbox_missing);
 
 }  // namespace fluxfarm

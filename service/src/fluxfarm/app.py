@@ -14,14 +14,15 @@ import fluxfarm
 from fluxfarm.adapters import data_folder
 from fluxfarm.adapters.blobs import FileBlobStore
 from fluxfarm.adapters.engine.local_pool import LocalPool
+from fluxfarm.adapters.engine.process import EngineCommand
 from fluxfarm.adapters.ledger import SqliteLedger
 from fluxfarm.adapters.ledger.database import sqlite_warning
 from fluxfarm.api import assets, images, jobs, keys, problems, report, streams, system
 from fluxfarm.api.access import authorize
 from fluxfarm.api.body_guard import BodyGuard
 from fluxfarm.api.deps import Services
-from fluxfarm.errors import StartError
 from fluxfarm.api.problems import problem_responses
+from fluxfarm.errors import StartError
 from fluxfarm.orchestrator import Orchestrator
 from fluxfarm.orchestrator.key_ring import KeyRing, new_secret
 from fluxfarm.orchestrator.orchestrator import OrchestratorSettings

@@ -29,7 +29,8 @@ from fluxfarm.domain.tiles import TileGrid
 
 @dataclass(frozen=True, slots=True)
 class WorkerInfo:
-    """One engine process. `leases` are (fence, job id) of the work it holds, oldest first."""
+    """One engine process. `leases` are (fence, job id) of the work it holds, oldest first; `sandbox_missing` says what
+    of its sandbox the kernel does not hold."""
 
     id: int
     state: str
@@ -39,6 +40,7 @@ class WorkerInfo:
     restarts: int
     leases: tuple[tuple[int, str], ...] = field(default=())
     last_words: str = ""
+    sandbox_missing: tuple[str, ...] = field(default=())
 
 
 class WorkerPool(Protocol):
@@ -69,11 +71,11 @@ class BlobStore(Protocol):
     async def put_asset(self, sha256: str, chunks: AsyncIterable[bytes]) -> bool:
         """Store an upload; True if it is new. Raises DigestMismatch, TooLarge or DiskFull."""
 
-    def missing_assets(self, digests: Sequence[str]) -> list[str]:
-        """Those of `digests` that are not stored, in order, each once."""
     def free_bytes(self) -> int:
         """Room on the disk."""
 
+    def missing_assets(self, digests: Sequence[str]) -> list[str]:
+        """Those of `digests` that are not stored, in order, each once."""
 
     async def put_builtin(self, folder: Path) -> SceneBundle:
         """Store the files of a scene folder whose entry is scene.xml."""

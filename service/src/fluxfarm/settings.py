@@ -13,6 +13,8 @@ from fluxfarm.errors import BadSetting, EngineMissing
 PREFIX = "FLUXFARM_"
 # In the data folder, the API key of who runs the service; nobody else can read it.
 OWNER_KEY_FILE = "owner.key"
+# Of the machine's memory.
+MEMORY_FOR_WORKERS = 0.9
 _PACKAGE = Path(__file__).resolve().parent
 
 
@@ -32,17 +34,25 @@ class Settings:
     stall_seconds: float = 300.0
     max_asset_bytes: int = 4 << 30
     max_pixels: int = 1 << 27
+    least_free_bytes: int = 256 << 20
     keep_assets_hours: float = 24.0
     journal: str = "wal"
-    least_free_bytes: int = 256 << 20
     sync: str = "full"
     keys: str = "auto"
+    sandbox: str = "wanted"
+    worker_memory_bytes: int = 0
     log_level: str = "info"
 
     @property
     def threads_per_worker(self) -> int:
         """Threads of each engine process: as set, else all cores shared among the processes."""
         return self.threads or max(1, len(os.sched_getaffinity(0)) // self.workers)
+
+    @property
+    def memory_per_worker(self) -> int:
+        """Bytes that an engine process may take: as set, else a share of most of this machine's memory."""
+        machine = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
+        return self.worker_memory_bytes or int(MEMORY_FOR_WORKERS * machine / self.workers)
 
     @property
     def asks_for_keys(self) -> bool:
@@ -74,17 +84,19 @@ BOUNDS: dict[str, tuple[float, float]] = {
     "stall_seconds": (0.1, 86400),
     "max_asset_bytes": (1, 1 << 50),
     "max_pixels": (1, 1 << 32),
+    "least_free_bytes": (0, 1 << 50),
     "keep_assets_hours": (0, 1e6),
+    "worker_memory_bytes": (0, 1 << 50),
 }
 CHOICES: dict[str, tuple[str, ...]] = {
     "journal": ("wal", "delete"),
     "sync": ("full", "off"),
+    "sandbox": ("wanted", "required"),
     "keys": ("auto", "on", "off"),
     "log_level": ("debug", "info", "warning", "error"),
 }
 
 
-    "least_free_bytes": (0, 1 << 50),
 def from_environment(environment: Mapping[str, str] | None = None) -> Settings:
     """Read the settings; raises BadSetting naming the variable, its value and what would be right."""
     environment = os.environ if environment is None else environment

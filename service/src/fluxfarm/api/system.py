@@ -28,6 +28,7 @@ class WorkerOut(BaseModel):
     engine_build: str
     restarts: int = Field(description="How often the process in this place was replaced.")
     jobs: list[str] = Field(description="Jobs whose leases it holds, oldest first.")
+    sandbox_missing: list[str] = Field(description="What of its sandbox the kernel does not hold; empty: nothing.")
     last_words: str = Field(description="Why the process before ended.")
 
 
@@ -69,6 +70,7 @@ async def workers(farm: Farm) -> WorkersOut:
                 engine_build=worker.engine_build,
                 restarts=worker.restarts,
                 jobs=list(dict.fromkeys(job_id for _, job_id in worker.leases)),
+                sandbox_missing=list(worker.sandbox_missing),
                 last_words=worker.last_words,
             )
             for worker in farm.pool.workers()
@@ -84,6 +86,9 @@ async def system(farm: Farm) -> SystemOut:
     warnings = list(farm.warnings)
     if free < LEAST_FREE_BYTES:
         warnings.append(f"{free} bytes free in {farm.data}, expected at least {LEAST_FREE_BYTES}")
+    missing = sorted({part for worker in farm.pool.workers() for part in worker.sandbox_missing})
+    if missing:
+        warnings.append(f"engine processes are not wholly shut in, without: {', '.join(missing)}")
     if len(builds) > 1:
         warnings.append(
             f"engine processes of different builds: {', '.join(builds)}; pixels may differ, restart the service"

@@ -181,12 +181,17 @@ def serve(
     data: Annotated[Path | None, typer.Option("--data", help="Data folder.")] = None,
     workers: Annotated[int | None, typer.Option("--workers", help="Engine processes.")] = None,
     threads: Annotated[int | None, typer.Option("--threads", help="Threads of each engine process.")] = None,
+    require_sandbox: Annotated[
+        bool, typer.Option("--require-sandbox", help="Do not render where the kernel cannot shut engine processes in.")
+    ] = False,
 ) -> None:
     """Run the service until Ctrl-C or SIGTERM. Every setting is also a FLUXFARM_ variable of the environment."""
     with _loading():
         from fluxfarm.cli.serving import run
 
-    run(_changed(from_environment(), host=host, port=port, data=data, workers=workers, threads=threads))
+    sandbox = "required" if require_sandbox else None
+    options = {"host": host, "port": port, "data": data, "workers": workers, "threads": threads, "sandbox": sandbox}
+    run(_changed(from_environment(), **options))
 
 
 keys_app = typer.Typer(help="Make, list and drop the API keys of a service.", no_args_is_help=True)

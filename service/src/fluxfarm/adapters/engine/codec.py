@@ -30,7 +30,7 @@ from fluxfarm.domain.records import SceneFacts
 from fluxfarm.domain.schedule import Round, SampleRange
 from fluxfarm.domain.tiles import PixelRect
 
-PROTOCOL_VERSION = 5
+PROTOCOL_VERSION = 6
 MAX_FRAME_BYTES = 64 << 20
 LENGTH = struct.Struct("<I")
 
@@ -53,6 +53,7 @@ class Hello:
     engine_build: str
     threads: int
     pid: int
+    sandbox_missing: tuple[str, ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -115,7 +116,7 @@ def hello(reply: Reply) -> Hello:
         raise ProtocolError(f"the first message is {type(body).__name__}, expected Hello")
     if body.protocol_version != PROTOCOL_VERSION:
         raise ProtocolError(f"protocol_version = {body.protocol_version}, expected {PROTOCOL_VERSION}: build both anew")
-    return Hello(body.protocol_version, body.engine_build, body.threads, body.pid)
+    return Hello(body.protocol_version, body.engine_build, body.threads, body.pid, tuple(body.sandbox_missing))
 
 
 def outcome(work: Lease, reply: Reply) -> tuple[Outcome, bool]:

@@ -4,9 +4,8 @@ import asyncio
 import logging
 import time
 from collections.abc import AsyncIterator
-from pathlib import Path
 
-from fluxfarm.adapters.engine.process import EngineProcess
+from fluxfarm.adapters.engine.process import EngineCommand, EngineProcess
 from fluxfarm.domain.leases import Lease, LeaseLost, Outcome
 from fluxfarm.ports import WorkerInfo
 
@@ -19,12 +18,10 @@ GOOD_LIFE_S = 5.0
 
 
 class LocalPool:
-    """`workers` processes of the engine `program` with `threads` threads each."""
+    """`workers` processes of one engine."""
 
-    def __init__(self, program: Path, workers: int, threads: int, stall_s: float) -> None:
-        self._program = program
-        self._threads = threads
-        self._stall_s = stall_s
+    def __init__(self, engine: EngineCommand, workers: int) -> None:
+        self._engine = engine
         self._slots = [_Slot(number) for number in range(1, workers + 1)]
         self._outcomes: asyncio.Queue[Outcome | None] = asyncio.Queue()
         self._tasks: list[asyncio.Task[None]] = []
@@ -64,18 +61,18 @@ class LocalPool:
 
     def workers(self) -> list[WorkerInfo]:
         """All processes as they are now."""
-        return [slot.info(self._threads) for slot in self._slots]
+        return [slot.info(self._engine.threads) for slot in self._slots]
 
     async def _keep_alive(self, slot: "_Slot") -> None:
         pause_s = FIRST_PAUSE_S
         while not slot.closing:
             started = time.monotonic()
-            process = EngineProcess(self._program, self._threads, self._stall_s, self._outcomes.put_nowait)
+            process = EngineProcess(self._engine, self._outcomes.put_nowait)
             slot.process = process
             try:
                 reason = await process.run()
             except OSError as error:
-                reason = f"{self._program}: cannot be started: {error}"
+                reason = f"{self._engine.program}: cannot be started: {error}"
             slot.process = None
             if slot.closing:
                 return
@@ -118,4 +115,5 @@ class _Slot:
             restarts=self.restarts,
             leases=tuple((lease.fence, lease.job_id) for lease in leases),
             last_words=self.last_words,
+            sandbox_missing=() if hello is None else hello.sandbox_missing,
         )

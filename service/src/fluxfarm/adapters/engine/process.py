@@ -11,6 +11,7 @@ import signal
 import socket
 import time
 from collections.abc import Callable
+from dataclasses import dataclass
 from pathlib import Path
 
 from fluxfarm.adapters.engine import codec
@@ -23,13 +24,30 @@ CANCEL_GRACE_S = 1.0
 LAST_WORDS_BYTES = 2000
 
 
+@dataclass(frozen=True, slots=True)
+class EngineCommand:
+    """How engine processes start: shut in to the folder `data`, with at most `memory_bytes` (0: any), and given up
+    without a sign of progress for `stall_s` seconds."""
+
+    program: Path
+    threads: int
+    stall_s: float
+    data: Path
+    memory_bytes: int
+    require_sandbox: bool
+
+    def words(self, descriptor: int) -> list[str]:
+        """Its command line; `descriptor` is its end of the socket."""
+        words = [str(self.program), "worker", "--fd", str(descriptor), "--threads", str(self.threads)]
+        words += ["--data", str(self.data.absolute()), "--memory", str(self.memory_bytes)]
+        return [*words, "--require-sandbox"] if self.require_sandbox else words
+
+
 class EngineProcess:
     """A child process from its start to its end. `report` is called with each outcome, in order."""
 
-    def __init__(self, program: Path, threads: int, stall_s: float, report: Callable[[Outcome | None], None]) -> None:
-        self._program = program
-        self._threads = threads
-        self._stall_s = stall_s
+    def __init__(self, engine: EngineCommand, report: Callable[[Outcome | None], None]) -> None:
+        self._engine = engine
         self._report = report
         self._ids = itertools.count(1)
         self._held: dict[int, Lease] = {}
@@ -50,8 +68,7 @@ class EngineProcess:
         try:
             with theirs:
                 self._child = await asyncio.create_subprocess_exec(
-                    self._program,
-                    *("worker", "--fd", str(theirs.fileno()), "--threads", str(self._threads)),
+                    *self._engine.words(theirs.fileno()),
                     pass_fds=[theirs.fileno()],
                     stdin=asyncio.subprocess.DEVNULL,
                     stdout=asyncio.subprocess.PIPE,
@@ -179,9 +196,9 @@ class EngineProcess:
 
     async def _watch_for_stalls(self) -> None:
         while True:
-            await asyncio.sleep(min(1.0, self._stall_s / 4))
-            if self._held and time.monotonic() - self._last_heard > self._stall_s:
-                self.kill(f"gave no sign of progress for {self._stall_s:g} s", blame=True)
+            await asyncio.sleep(min(1.0, self._engine.stall_s / 4))
+            if self._held and time.monotonic() - self._last_heard > self._engine.stall_s:
+                self.kill(f"gave no sign of progress for {self._engine.stall_s:g} s", blame=True)
 
     async def _listen_to_logs(self) -> None:
         assert self._child is not None and self._child.stdout is not None
