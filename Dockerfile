@@ -4,7 +4,7 @@ WORKDIR /opt/fluxfarm
 COPY . .
 RUN apt-get update -q && apt-get install -y -q --no-install-recommends make git ca-certificates \
     && tools/setup-apt build && make build && rm -rf /var/lib/apt/lists/*
-RUN useradd --system --create-home --home-dir /var/lib/fluxfarm fluxfarm
+RUN useradd --system --create-home --home-dir /var/lib/fluxfarm fluxfarm && install -d -o fluxfarm /certificates
 USER fluxfarm
 ENV FLUXFARM_DATA=/var/lib/fluxfarm/data
 VOLUME /var/lib/fluxfarm

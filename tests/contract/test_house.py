@@ -80,7 +80,7 @@ def test_container_is_built_by_the_scripts_that_make_uses() -> None:
 def test_compose_file_publishes_the_service_to_this_machine_only() -> None:
     compose = text("docker-compose.yml")
     assert re.search(r"^services:\n {2}fluxfarm:\n", compose, re.MULTILINE)
-    assert re.findall(r'- "([^"]+:\d+:\d+)"', compose) == ["127.0.0.1:8460:8460"]
+    assert re.findall(r'- "([^"]+:\d+:\d+)"', compose) == ["127.0.0.1:8460:8460", "127.0.0.1:8461:8460"]
     assert "\t" not in compose
 
 

@@ -20,10 +20,11 @@ from fluxfarm.domain.leases import (
     SceneRef,
     TileRendered,
 )
+from fluxfarm.domain.scene import SceneBundle
 from fluxfarm.domain.schedule import SampleRange
 from fluxfarm.domain.tiles import PixelRect
 
-SCENE = SceneRef("key", Path("/scene"), "scene.xml", 0, 0, "")
+SCENE = SceneRef("key", Path("/scene"), "scene.xml", 0, 0, "", SceneBundle("scene.xml", {"scene.xml": "0" * 64}))
 RECTS = (PixelRect(0, 0, 16, 16), PixelRect(16, 0, 8, 16))
 LEASE = RenderLease(7, "job", SCENE, 2**53 - 1, 3, SampleRange(4, 8), (0, 1), RECTS, Path("/scratch/7"))
 

@@ -41,8 +41,8 @@ class Cancelled(Exception):
 
 
 class FakeEngine:
-    def __init__(self, connection: socket.socket, threads: int) -> None:
-        self.connection, self.threads = connection, threads
+    def __init__(self, connection: socket.socket, threads: int, build: str) -> None:
+        self.connection, self.threads, self.build = connection, threads, build
         self.requests: queue.SimpleQueue[pb.Request | None] = queue.SimpleQueue()
         self.cancelled: set[int] = set()
         self.scenes: dict[str, dict[str, str]] = {}
@@ -51,7 +51,7 @@ class FakeEngine:
         self.reply(
             0,
             hello=pb.Hello(
-                protocol_version=PROTOCOL_VERSION, engine_build="fake-1", threads=self.threads, pid=os.getpid()
+                protocol_version=PROTOCOL_VERSION, engine_build=self.build, threads=self.threads, pid=os.getpid()
             ),
         )
         threading.Thread(target=self.read_to_the_end, daemon=True).start()
@@ -228,11 +228,12 @@ def main() -> None:
     parser.add_argument("--memory", type=int)
     parser.add_argument("--require-sandbox", action="store_true")
     parser.add_argument("--json", action="store_true")
+    parser.add_argument("--build", default="fake-1")
     arguments = parser.parse_args()
     if arguments.command == "info":
-        print(json.dumps({"build": "fake-1", "protocol_version": PROTOCOL_VERSION}))
+        print(json.dumps({"build": arguments.build, "protocol_version": PROTOCOL_VERSION}))
         return
-    FakeEngine(socket.socket(fileno=arguments.fd), arguments.threads).run()
+    FakeEngine(socket.socket(fileno=arguments.fd), arguments.threads, arguments.build).run()
 
 
 if __name__ == "__main__":

@@ -10,11 +10,12 @@ from fluxfarm.domain.goal import Goal, Limits
 from fluxfarm.domain.job import JobState
 from fluxfarm.domain.leases import Decision, SceneRef
 from fluxfarm.domain.records import JobRecord, OpenedPass, StoredTile, Unmerged
+from fluxfarm.domain.scene import SceneBundle
 from fluxfarm.domain.schedule import Round, SampleRange
 from fluxfarm.orchestrator.run import MERGE_PAUSE, PASSES_TO_A_FILM, JobRun
 
 LATER = 1e18
-SCENE = SceneRef("key", Path(), "scene.xml", 0, 0, "")
+SCENE = SceneRef("key", Path(), "scene.xml", 0, 0, "", SceneBundle("scene.xml", {"scene.xml": "0" * 64}))
 
 
 def running(

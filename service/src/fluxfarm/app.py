@@ -26,6 +26,7 @@ from fluxfarm.errors import StartError
 from fluxfarm.orchestrator import Orchestrator
 from fluxfarm.orchestrator.key_ring import KeyRing, new_secret
 from fluxfarm.orchestrator.orchestrator import OrchestratorSettings
+from fluxfarm.ports import WorkerPool
 from fluxfarm.settings import OWNER_KEY_FILE, Settings, engine_program, scenes_folder
 
 log = logging.getLogger(__name__)
@@ -69,7 +70,7 @@ async def start_services(settings: Settings, stack: AsyncExitStack) -> Services:
         settings.memory_per_worker,
         settings.sandbox == "required",
     )
-    pool = LocalPool(engine, settings.workers)
+    pool = _pool(settings, engine)
     limits = OrchestratorSettings(
         settings.tile_size, settings.lease_seconds, settings.max_pixels, settings.least_free_bytes
     )
@@ -94,6 +95,20 @@ async def start_services(settings: Settings, stack: AsyncExitStack) -> Services:
         max_pixels=settings.max_pixels,
         max_asset_bytes=settings.max_asset_bytes,
     )
+
+
+def _pool(settings: Settings, engine: EngineCommand) -> WorkerPool:
+    """Engine processes of this machine; with the backend dask those of a farm, and one here to prepare and merge."""
+    if settings.backend == "local":
+        return LocalPool(engine, settings.workers)
+    try:
+        # Only here, since it takes a second to load.
+        from fluxfarm.adapters.dask import dask_logs
+        from fluxfarm.adapters.dask.pool import DaskPool
+    except ImportError as error:
+        raise StartError(f"FLUXFARM_BACKEND = dask: needs the extra fluxfarm[dask]: {error}") from None
+    dask_logs.send_to_ours()
+    return DaskPool(LocalPool(engine, 1), settings.scheduler, settings.certificates_folder)
 
 
 async def _key_ring(settings: Settings, ledger: SqliteLedger) -> KeyRing:

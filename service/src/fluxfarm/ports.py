@@ -30,7 +30,8 @@ from fluxfarm.domain.tiles import TileGrid
 @dataclass(frozen=True, slots=True)
 class WorkerInfo:
     """One engine process. `leases` are (fence, job id) of the work it holds, oldest first; `sandbox_missing` says what
-    of its sandbox the kernel does not hold."""
+    of its sandbox the kernel does not hold. `host` is "" on this machine. Those that `prepare` also merge; only those
+    that `render` take samples."""
 
     id: int
     state: str
@@ -41,6 +42,9 @@ class WorkerInfo:
     leases: tuple[tuple[int, str], ...] = field(default=())
     last_words: str = ""
     sandbox_missing: tuple[str, ...] = field(default=())
+    host: str = ""
+    prepares: bool = True
+    renders: bool = True
 
 
 class WorkerPool(Protocol):

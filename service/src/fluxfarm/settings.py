@@ -39,6 +39,9 @@ class Settings:
     journal: str = "wal"
     sync: str = "full"
     keys: str = "auto"
+    backend: str = "local"
+    scheduler: str = ""
+    certificates: str = ""
     sandbox: str = "wanted"
     worker_memory_bytes: int = 0
     log_level: str = "info"
@@ -47,6 +50,11 @@ class Settings:
     def threads_per_worker(self) -> int:
         """Threads of each engine process: as set, else all cores shared among the processes."""
         return self.threads or max(1, len(os.sched_getaffinity(0)) // self.workers)
+
+    @property
+    def certificates_folder(self) -> Path | None:
+        """Where ca.pem, node.pem and node.key are."""
+        return Path(self.certificates).expanduser() if self.certificates else None
 
     @property
     def memory_per_worker(self) -> int:
@@ -91,6 +99,7 @@ BOUNDS: dict[str, tuple[float, float]] = {
 CHOICES: dict[str, tuple[str, ...]] = {
     "journal": ("wal", "delete"),
     "sync": ("full", "off"),
+    "backend": ("local", "dask"),
     "sandbox": ("wanted", "required"),
     "keys": ("auto", "on", "off"),
     "log_level": ("debug", "info", "warning", "error"),

@@ -9,6 +9,7 @@ from fluxfarm.domain.goal import settled
 from fluxfarm.domain.job import JobState
 from fluxfarm.domain.progress import Progress
 from fluxfarm.domain.records import JobRecord, Revision
+from fluxfarm.domain.scene import SHA256_PATTERN
 
 MAX_SIDE = 65_536
 MAX_SPP = 1 << 24
@@ -115,7 +116,7 @@ class JobIn(Strict):
 class MissingIn(Strict):
     """Digests to look for."""
 
-    sha256: list[str] = Field(max_length=10_000)
+    sha256: list[Annotated[str, Field(pattern=SHA256_PATTERN)]] = Field(max_length=10_000)
 
 
 class MissingOut(BaseModel):

@@ -23,6 +23,7 @@ class WorkerOut(BaseModel):
 
     id: int
     state: str
+    host: str = Field(description="Machine that it runs on; empty: this one.")
     pid: int | None
     threads: int
     engine_build: str
@@ -65,6 +66,7 @@ async def workers(farm: Farm) -> WorkersOut:
             WorkerOut(
                 id=worker.id,
                 state=worker.state,
+                host=worker.host,
                 pid=worker.pid,
                 threads=worker.threads,
                 engine_build=worker.engine_build,

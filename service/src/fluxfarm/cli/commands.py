@@ -47,6 +47,12 @@ IntegratorOption = Annotated[
 SizeOption = Annotated[str | None, typer.Option("--size", metavar="WxH", help="Frame size in pixels.")]
 CropOption = Annotated[str | None, typer.Option("--crop", metavar="X,Y,W,H", help="Part of the frame to render.")]
 SeedOption = Annotated[int, typer.Option("--seed", help="Another seed gives an independent image.")]
+SchedulerOption = Annotated[
+    str | None, typer.Option("--scheduler", help="Address of the farm's scheduler, tls://HOST:PORT.")
+]
+CertificatesOption = Annotated[
+    Path | None, typer.Option("--certificates", help="Folder that `fluxfarm certificates` wrote.")
+]
 PriorityOption = Annotated[int, typer.Option("--priority", help="Higher goes first.")]
 
 
@@ -181,6 +187,9 @@ def serve(
     data: Annotated[Path | None, typer.Option("--data", help="Data folder.")] = None,
     workers: Annotated[int | None, typer.Option("--workers", help="Engine processes.")] = None,
     threads: Annotated[int | None, typer.Option("--threads", help="Threads of each engine process.")] = None,
+    backend: Annotated[str | None, typer.Option("--backend", help="local, or dask for a farm of machines.")] = None,
+    scheduler: SchedulerOption = None,
+    certificates: CertificatesOption = None,
     require_sandbox: Annotated[
         bool, typer.Option("--require-sandbox", help="Do not render where the kernel cannot shut engine processes in.")
     ] = False,
@@ -190,8 +199,39 @@ def serve(
         from fluxfarm.cli.serving import run
 
     sandbox = "required" if require_sandbox else None
-    options = {"host": host, "port": port, "data": data, "workers": workers, "threads": threads, "sandbox": sandbox}
+    options: dict[str, Any] = {"backend": backend, "scheduler": scheduler, "certificates": certificates}
+    options |= {"host": host, "port": port, "data": data, "workers": workers, "threads": threads, "sandbox": sandbox}
     run(_changed(from_environment(), **options))
+
+
+@app.command()
+def scheduler(scheduler: SchedulerOption = None, certificates: CertificatesOption = None) -> None:
+    """Run the scheduler of a farm, which service and workers join, until Ctrl-C or SIGTERM."""
+    from fluxfarm.cli.farming import run_node
+
+    run_node("scheduler", _changed(from_environment(), scheduler=scheduler, certificates=certificates))
+
+
+@app.command()
+def worker(
+    scheduler: SchedulerOption = None,
+    certificates: CertificatesOption = None,
+    data: Annotated[Path | None, typer.Option("--data", help="Folder for files of scenes.")] = None,
+    threads: Annotated[int | None, typer.Option("--threads", help="Threads of the engine process.")] = None,
+) -> None:
+    """Render for the services of a farm until Ctrl-C or SIGTERM; one for each machine."""
+    from fluxfarm.cli.farming import run_node
+
+    changes = {"scheduler": scheduler, "certificates": certificates, "data": data, "threads": threads}
+    run_node("worker", _changed(from_environment(), **changes))
+
+
+@app.command()
+def certificates(folder: Annotated[Path, typer.Argument(metavar="FOLDER", help="Where to write them.")]) -> None:
+    """Make the certificates with which the machines of a farm know each other."""
+    from fluxfarm.cli.farming import write_certificates
+
+    write_certificates(folder)
 
 
 keys_app = typer.Typer(help="Make, list and drop the API keys of a service.", no_args_is_help=True)

@@ -6,6 +6,7 @@ from pathlib import Path
 
 from fluxfarm.domain.goal import Goal
 from fluxfarm.domain.records import SceneFacts
+from fluxfarm.domain.scene import SceneBundle
 from fluxfarm.domain.schedule import Round, SampleRange
 from fluxfarm.domain.tiles import PixelRect
 
@@ -21,7 +22,7 @@ class Picture:
 
 @dataclass(frozen=True, slots=True)
 class SceneRef:
-    """A scene for an engine process. Zeros and "": as the scene says.
+    """A scene for an engine process: `entry` in `folder`, with the files of `bundle`. Zeros and "": as the scene says.
 
     `key` differs whenever anything below differs, with one exception: the integrator "auto" for a picture has the key
     of the method that is chosen for it."""
@@ -32,6 +33,7 @@ class SceneRef:
     width: int
     height: int
     integrator: str
+    bundle: SceneBundle
     picture: Picture | None = None
 
     def with_method(self, chosen: str) -> "SceneRef":

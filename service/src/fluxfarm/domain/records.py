@@ -101,7 +101,6 @@ class JobRecord:
     reason: str | None
     request: JobRequest
     created_at: float
-    owner: str | None
     facts: SceneFacts | None
     grid: TileGrid | None
     warnings: tuple[str, ...]
@@ -114,6 +113,7 @@ class JobRecord:
     crashes: int
     resource_failures: int
     newest: Revision | None
+    owner: str | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -101,7 +101,7 @@ class Dispatcher:
                 return
 
     async def _next_lease(self, worker: WorkerInfo, runs: Sequence[JobRun]) -> Lease | None:
-        if self._errands:
+        if self._errands and worker.prepares:
             return self._errands.pop(0)
         by_id = {run.id: run for run in runs}
         others = {job_id for _, job_id in worker.leases}
@@ -118,15 +118,15 @@ class Dispatcher:
     async def _lease_of(self, run: JobRun, worker: WorkerInfo) -> Lease | None:
         """The next lease of one job, recorded in the ledger before it is handed out; None if it has no work now."""
         lease: Lease | None = None
-        if run.state is JobState.QUEUED:
+        if run.state is JobState.QUEUED and worker.prepares:
             await self._ledger.change_state(run.id, JobState.PREPARING)
             run.state = JobState.PREPARING
             self._tallies.queue_seconds.add(max(time.time() - run.created_at, 0.0))
             lease = PrepareLease(self.new_fence(), run.id, run.scene)
             run.single_lease = lease.fence
         elif run.state in (JobState.RUNNING, JobState.FINALIZING):
-            lease = self._merge_lease(run)
-            if lease is None and self._committer.backlog_bytes < MOST_BACKLOG_BYTES:
+            lease = self._merge_lease(run) if worker.prepares else None
+            if lease is None and worker.renders and self._committer.backlog_bytes < MOST_BACKLOG_BYTES:
                 lease = self._render_lease(run, worker)
         if lease is not None:
             self._ledger.grant(lease.fence, run.id)
@@ -137,7 +137,8 @@ class Dispatcher:
         if opened is not None:
             self._ledger.open_pass(run.id, opened)
         tiles_out = self._blobs.scratch(run.id, str(self.next_fence))
-        lease = run.take_lease(self.next_fence, worker.threads, len(self._pool.workers()), self._lease_s, tiles_out)
+        rendering = sum(1 for other in self._pool.workers() if other.renders)
+        lease = run.take_lease(self.next_fence, worker.threads, rendering, self._lease_s, tiles_out)
         if lease is not None:
             self.new_fence()
         return lease
@@ -176,5 +177,5 @@ def scene_ref(request: JobRequest, folder: Path, chosen: str | None) -> SceneRef
         picture = Picture(request.crop, request.seed, request.goal)
         settled.append(asdict(picture))
     key = hashlib.sha256(json.dumps(settled).encode()).hexdigest()
-    scene = SceneRef(key, folder, request.bundle.entry, width, height, request.method, picture)
+    scene = SceneRef(key, folder, request.bundle.entry, width, height, request.method, request.bundle, picture)
     return scene if chosen is None else scene.with_method(chosen)

@@ -1,0 +1,1 @@
+"""Workers on other machines, by Dask distributed. Needs the extra `fluxfarm[dask]`."""
