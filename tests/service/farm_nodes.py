@@ -6,7 +6,7 @@ import socket
 import subprocess
 import sys
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -27,11 +27,11 @@ def free_port() -> int:
 class Nodes:
     """A scheduler and what joined it, all on this machine with TLS; ends with `close`."""
 
-    def __init__(self, folder: Path, engine: Path, **settings: object) -> None:
+    def __init__(self, folder: Path, engine: Path, host: str = "127.0.0.1", **settings: object) -> None:
         self.folder = folder
         self.certificates = folder / "certificates"
         subprocess.run([*COMMAND, "certificates", str(self.certificates)], check=True, stdout=subprocess.DEVNULL)
-        self.address = f"tls://127.0.0.1:{free_port()}"
+        self.address = f"tls://{host}:{free_port()}"
         self.environment = {
             **os.environ,
             "FLUXFARM_ENGINE": str(engine),
@@ -46,16 +46,16 @@ class Nodes:
         self.service: Node | None = None
         self.client: Client | None = None
 
-    def start(self, *words: str, **changes: object) -> Node:
-        """Start a node; `first_line` waits for it."""
+    def start(self, *words: str, inside: Sequence[str] = (), **changes: object) -> Node:
+        """Start a node, by the command `inside` if one is given; `first_line` waits for it."""
         environment = self.environment | {f"FLUXFARM_{name.upper()}": str(value) for name, value in changes.items()}
         log = (self.folder / f"{words[0]}.log").open("a")
         with log:
-            return Node([*COMMAND, *words], env=environment, stdout=subprocess.PIPE, stderr=log, text=True)
+            return Node([*inside, *COMMAND, *words], env=environment, stdout=subprocess.PIPE, stderr=log, text=True)
 
-    def add_worker(self, **changes: object) -> None:
+    def add_worker(self, inside: Sequence[str] = (), **changes: object) -> None:
         folder = self.folder / f"worker-{len(self.workers)}"
-        self.workers.append(self.start("worker", "--data", str(folder), **changes))
+        self.workers.append(self.start("worker", "--data", str(folder), inside=inside, **changes))
 
     def serve(self) -> Client:
         """Start the service, or start it again on the same data."""
