@@ -31,6 +31,7 @@ from fluxfarm.errors import (
     SchemaTooNew,
     StaleLease,
     StoreDamaged,
+    StoreUnusable,
 )
 
 REQUEST = JobRequest(
@@ -241,6 +242,20 @@ def test_damaged_or_newer_database_is_refused(tmp_path: Path) -> None:
     connection.close()
     with pytest.raises(SchemaTooNew):
         SqliteLedger(newer)
+
+
+def test_database_that_another_program_holds_or_that_cannot_be_written_says_so(tmp_path: Path) -> None:
+    held = tmp_path / "held.sqlite3"
+    SqliteLedger(held).close()
+    other = sqlite3.connect(held, isolation_level=None)
+    other.execute("PRAGMA locking_mode = EXCLUSIVE")
+    other.execute("BEGIN EXCLUSIVE")
+    with pytest.raises(StoreUnusable, match=r"held\.sqlite3: database is locked"):
+        SqliteLedger(held)
+    other.close()
+    (tmp_path / "folder").mkdir()
+    with pytest.raises(StoreUnusable, match=r"folder: unable to open"):
+        SqliteLedger(tmp_path / "folder")
 
 
 def test_database_of_the_first_version_is_brought_to_the_newest(tmp_path: Path) -> None:

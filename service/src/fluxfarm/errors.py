@@ -25,6 +25,7 @@
     +-- StartError                (ends the program before it serves)
         +-- DataFolderInUse
         +-- StoreDamaged
+        +-- StoreUnusable
         +-- SchemaTooNew
         +-- BadSetting
         +-- EngineMissing
@@ -227,6 +228,10 @@ class DataFolderInUse(StartError):
 
 class StoreDamaged(StartError):
     """The database does not pass SQLite's check, or names files that are not there."""
+
+
+class StoreUnusable(StartError):
+    """The database cannot be opened for writing, or another program holds it."""
 
 
 class SchemaTooNew(StartError):

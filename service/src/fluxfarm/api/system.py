@@ -19,7 +19,8 @@ LEAST_FREE_BYTES = 1 << 30
 
 
 class WorkerOut(BaseModel):
-    """One engine process. States: STARTING, READY, WORKING, BROKEN (does not start)."""
+    """One engine process. States: STARTING, READY, WORKING, BROKEN (does not start); of a farm also UNKNOWN (does not
+    answer) and REFUSED (of another build, see `last_words`)."""
 
     id: int
     state: str

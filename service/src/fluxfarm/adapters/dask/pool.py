@@ -115,9 +115,9 @@ class DaskPool:
                     self._client = await self._connect()
                 await self._look(self._client)
                 self._known = True
-            except (OSError, TimeoutError, ValueError, RuntimeError) as error:
+            except Exception as error:  # of many kinds, and none may end this
                 if self._known:
-                    log.warning("the scheduler cannot be asked", extra={"reason": str(error)})
+                    log.warning("the scheduler cannot be asked", extra={"reason": repr(error)})
                 self._known = False
                 self._outcomes.put_nowait(None)
             await asyncio.sleep(LOOK_S)
@@ -142,17 +142,19 @@ class DaskPool:
         self._lose(
             [address for address in self._members if address not in identity["workers"]], "the worker left the farm"
         )
-        greetings = await answered(client.run(worker_side.greet, on_error="ignore")) if identity["workers"] else {}
+        addresses = list(identity["workers"])
+        greetings = await asyncio.gather(*(_greeting(client, address) for address in addresses))
         changed = False
-        for address, greeting in greetings.items():
-            if not isinstance(greeting, Greeting):
-                continue
-            if address not in self._members:
-                self._members[address] = _Member(self._next_id, address)
+        for address, greeting in zip(addresses, greetings, strict=True):
+            if greeting is not None and address not in self._members:
+                self._members[address] = _Member(self._next_id, address, greeting)
                 self._next_id += 1
                 log.info("a worker joined", extra={"address": address, "host": greeting.host})
-            changed = changed or self._members[address].greeting != greeting
-            self._members[address].greeting = greeting
+                changed = True
+            if member := self._members.get(address):
+                changed = changed or member.answers != (greeting is not None) or greeting not in (None, member.greeting)
+                member.answers = greeting is not None
+                member.greeting = greeting or member.greeting
         if changed or not self._known:
             self._outcomes.put_nowait(None)
 
@@ -177,7 +179,11 @@ class DaskPool:
             rendered = Rendered(lost=(f"worker {member.name}: {error!r}", False))
         if member.leases.pop(lease.fence, None) is None:
             return
-        for outcome in await self._outcomes_of(lease, rendered):
+        try:
+            outcomes = await self._outcomes_of(lease, rendered)
+        except OSError as error:
+            outcomes = [LeaseFailed(lease, FailureKind.RESOURCE, f"a tile could not be written: {error}")]
+        for outcome in outcomes:
             self._outcomes.put_nowait(outcome)
 
     async def _render(self, member: "_Member", lease: RenderLease) -> Rendered:
@@ -245,26 +251,27 @@ class DaskPool:
 class _Member:
     """A worker of the farm as it is known here."""
 
-    def __init__(self, number: int, address: str) -> None:
+    def __init__(self, number: int, address: str, greeting: Greeting) -> None:
         self.id = number
         self.address = address
-        self.greeting: Greeting | None = None
+        self.greeting = greeting
+        self.answers = True
         self.leases: dict[int, RenderLease] = {}
 
     @property
     def name(self) -> str:
         """For people."""
-        return self.address if self.greeting is None else f"{self.greeting.host} ({self.address})"
+        return f"{self.greeting.host} ({self.address})"
 
     def info(self, scheduler_answers: bool, build: str) -> WorkerInfo:
         """This worker as the ports see it."""
         greeting = self.greeting
-        assert greeting is not None
         state, last_words = greeting.state, greeting.last_words
         if state in ("READY", "WORKING"):
             state = "WORKING" if self.leases else "READY"
-        if not scheduler_answers:
-            state, last_words = "UNKNOWN", "the scheduler cannot be asked"
+        if not scheduler_answers or not self.answers:
+            state = "UNKNOWN"
+            last_words = f"{'the worker' if scheduler_answers else 'the scheduler'} does not answer"
         elif greeting.version != fluxfarm.__version__ or (build and greeting.engine_build not in ("", build)):
             other = f"Fluxfarm {greeting.version}, engine build {greeting.engine_build}"
             state = "REFUSED"
@@ -282,6 +289,17 @@ class _Member:
             host=greeting.host,
             prepares=False,
         )
+
+
+async def _greeting(client: Client, address: str) -> Greeting | None:
+    """What a worker is, or None if it does not answer."""
+    try:
+        found = await answered(client.run(worker_side.greet, workers=[address]))
+    except Exception as error:  # of many kinds; the scheduler tells when it has left
+        log.info("a worker does not answer", extra={"address": address, "reason": repr(error)})
+        return None
+    greeting = found.get(address)
+    return greeting if isinstance(greeting, Greeting) else None
 
 
 async def answered(question: Awaitable[T]) -> T:

@@ -18,7 +18,7 @@ from sqlalchemy import Connection, Engine, create_engine, event
 from sqlalchemy.pool import QueuePool, StaticPool
 
 from fluxfarm.adapters.ledger.schema import MIGRATIONS
-from fluxfarm.errors import FarmError, SchemaTooNew, StoreDamaged
+from fluxfarm.errors import FarmError, SchemaTooNew, StoreDamaged, StoreUnusable
 from fluxfarm.failpoints import reach
 
 T = TypeVar("T")
@@ -34,7 +34,7 @@ class Database:
     """The file at `path`, opened, checked and brought to the newest schema; synced at each commit if `durable`."""
 
     def __init__(self, path: Path, journal: str, durable: bool) -> None:
-        """Raises StoreDamaged or SchemaTooNew."""
+        """Raises StoreDamaged, StoreUnusable or SchemaTooNew."""
         self._path = path
         self._journal = journal
         self._synchronous = "FULL" if durable else "OFF"
@@ -81,6 +81,10 @@ class Database:
                 for pragma in (f"synchronous = {self._synchronous}", "foreign_keys = ON", "busy_timeout = 5000"):
                     connection.execute(f"PRAGMA {pragma}")
                 found = connection.execute("PRAGMA quick_check(1)").fetchone()[0]
+            except sqlite3.OperationalError as error:  # "database is locked", "attempt to write a readonly database"
+                raise StoreUnusable(
+                    f"{self._path}: {error}; expected a database that this user can write and no other program holds"
+                ) from None
             except sqlite3.DatabaseError as error:
                 raise StoreDamaged(
                     f"{self._path}: {error}; expected an SQLite database, restore it from a backup"
