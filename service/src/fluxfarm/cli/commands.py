@@ -1,26 +1,38 @@
 """The commands and their options. Everything slow to load is imported by the command that needs it."""
 
-import gc
 import json
 import os
 import sys
-import tempfile
 import uuid
-from collections.abc import Iterator
-from contextlib import contextmanager, suppress
-from dataclasses import replace
+from contextlib import suppress
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 import typer
 
+from fluxfarm.cli.connect import changed, connect, loading, service
 from fluxfarm.cli.exits import EXIT_SENTENCES, CommandError, Exit
+from fluxfarm.cli.key_commands import keys_app
+from fluxfarm.cli.options import (
+    CertificatesOption,
+    CropOption,
+    IntegratorOption,
+    JobArgument,
+    OutOption,
+    PngOption,
+    PriorityOption,
+    RelErrorOption,
+    SceneArgument,
+    SchedulerOption,
+    SecondsOption,
+    SeedOption,
+    ServerOption,
+    SizeOption,
+    SppOption,
+)
 from fluxfarm.cli.request import JobOptions, find_scene, job_body, option_members
 from fluxfarm.errors import FarmError, StartError
-from fluxfarm.settings import OWNER_KEY_FILE, PREFIX, Settings, from_environment
-
-if TYPE_CHECKING:
-    from fluxfarm.cli.client import ServiceClient
+from fluxfarm.settings import from_environment
 
 EXITS = "Exit codes: " + "; ".join(f"{code.value} {text}" for code, text in EXIT_SENTENCES.items()) + "."
 app = typer.Typer(
@@ -30,30 +42,7 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
     rich_markup_mode=None,
 )
-
-SceneArgument = Annotated[str, typer.Argument(metavar="SCENE", help="Scene file (.xml, .json) or built-in name.")]
-JobArgument = Annotated[str, typer.Argument(metavar="JOB", help="Id of the job.")]
-OutOption = Annotated[Path, typer.Option("-o", "--out", help="OpenEXR file to write.")]
-PngOption = Annotated[Path | None, typer.Option("--png", help="Also write a PNG for the eye.")]
-ServerOption = Annotated[
-    str | None, typer.Option("--server", envvar=PREFIX + "SERVER", help="Address of a service, http://HOST:PORT.")
-]
-RelErrorOption = Annotated[float | None, typer.Option("--rel-error", help="Goal: relative error, for example 0.05.")]
-SppOption = Annotated[int | None, typer.Option("--spp", help="Goal: samples per pixel.")]
-SecondsOption = Annotated[float | None, typer.Option("--seconds", help="Goal: seconds of rendering.")]
-IntegratorOption = Annotated[
-    str | None, typer.Option("--integrator", help="auto, path, photon, photon-progressive or irradiance-cache.")
-]
-SizeOption = Annotated[str | None, typer.Option("--size", metavar="WxH", help="Frame size in pixels.")]
-CropOption = Annotated[str | None, typer.Option("--crop", metavar="X,Y,W,H", help="Part of the frame to render.")]
-SeedOption = Annotated[int, typer.Option("--seed", help="Another seed gives an independent image.")]
-SchedulerOption = Annotated[
-    str | None, typer.Option("--scheduler", help="Address of the farm's scheduler, tls://HOST:PORT.")
-]
-CertificatesOption = Annotated[
-    Path | None, typer.Option("--certificates", help="Folder that `fluxfarm certificates` wrote.")
-]
-PriorityOption = Annotated[int, typer.Option("--priority", help="Higher goes first.")]
+app.add_typer(keys_app, name="keys")
 
 
 def main() -> None:
@@ -101,7 +90,7 @@ def render(
     found = find_scene(scene)
     from fluxfarm.cli.follow import describe, follow, outcome
 
-    with _service(server, threads, workers) as client:
+    with service(server, threads, workers) as client:
         body, key = job_body(client, found, options), uuid.uuid4().hex
         try:
             job = follow(client, client.submit(body, key)["id"])
@@ -130,7 +119,7 @@ def submit(
     """Submit SCENE to a service and print the id of the job."""
     options = JobOptions(rel_error, spp, seconds, integrator, size, crop, seed, priority, name)
     found = find_scene(scene)
-    with _client(server) as client:
+    with connect(server) as client:
         print(client.submit(job_body(client, found, options), uuid.uuid4().hex)["id"])
 
 
@@ -139,7 +128,7 @@ def watch(job_id: JobArgument, server: ServerOption = None) -> None:
     """Follow a job until it ends."""
     from fluxfarm.cli.follow import follow, outcome
 
-    with _client(server) as client:
+    with connect(server) as client:
         outcome(follow(client, job_id))
 
 
@@ -152,7 +141,7 @@ def get(
     server: ServerOption = None,
 ) -> None:
     """Fetch the newest image of a job, finished or not."""
-    with _client(server) as client:
+    with connect(server) as client:
         _fetch(client, job_id, out, png, revision)
     print(out)
 
@@ -160,7 +149,7 @@ def get(
 @app.command()
 def cancel(job_id: JobArgument, server: ServerOption = None) -> None:
     """Give a job up."""
-    with _client(server) as client:
+    with connect(server) as client:
         print(client.call("POST", f"/v1/jobs/{job_id}:cancel")["state"])
 
 
@@ -171,7 +160,7 @@ def list_jobs(
     """List jobs, newest first."""
     from fluxfarm.cli.follow import describe
 
-    with _client(server) as client:
+    with connect(server) as client:
         jobs: list[dict[str, Any]] = client.call("GET", "/v1/jobs")["jobs"]
     if as_json:
         print(json.dumps(jobs, indent=2))
@@ -195,13 +184,13 @@ def serve(
     ] = False,
 ) -> None:
     """Run the service until Ctrl-C or SIGTERM. Every setting is also a FLUXFARM_ variable of the environment."""
-    with _loading():
+    with loading():
         from fluxfarm.cli.serving import run
 
     sandbox = "required" if require_sandbox else None
     options: dict[str, Any] = {"backend": backend, "scheduler": scheduler, "certificates": certificates}
     options |= {"host": host, "port": port, "data": data, "workers": workers, "threads": threads, "sandbox": sandbox}
-    run(_changed(from_environment(), **options))
+    run(changed(from_environment(), **options))
 
 
 @app.command()
@@ -209,7 +198,7 @@ def scheduler(scheduler: SchedulerOption = None, certificates: CertificatesOptio
     """Run the scheduler of a farm, which service and workers join, until Ctrl-C or SIGTERM."""
     from fluxfarm.cli.farming import run_node
 
-    run_node("scheduler", _changed(from_environment(), scheduler=scheduler, certificates=certificates))
+    run_node("scheduler", changed(from_environment(), scheduler=scheduler, certificates=certificates))
 
 
 @app.command()
@@ -223,7 +212,7 @@ def worker(
     from fluxfarm.cli.farming import run_node
 
     changes = {"scheduler": scheduler, "certificates": certificates, "data": data, "threads": threads}
-    run_node("worker", _changed(from_environment(), **changes))
+    run_node("worker", changed(from_environment(), **changes))
 
 
 @app.command()
@@ -232,51 +221,6 @@ def certificates(folder: Annotated[Path, typer.Argument(metavar="FOLDER", help="
     from fluxfarm.cli.farming import write_certificates
 
     write_certificates(folder)
-
-
-keys_app = typer.Typer(help="Make, list and drop the API keys of a service.", no_args_is_help=True)
-app.add_typer(keys_app, name="keys")
-
-
-@keys_app.command("add")
-def add_key(
-    name: Annotated[str, typer.Argument(metavar="NAME", help="Whose it is.")],
-    scope: Annotated[
-        str, typer.Option("--scope", help="read, submit or admin; each contains those before it.")
-    ] = "submit",
-    jobs: Annotated[int | None, typer.Option("--jobs", help="Most unfinished jobs at once.")] = None,
-    bytes_a_day: Annotated[int | None, typer.Option("--bytes-a-day", help="Most uploaded bytes in 24 hours.")] = None,
-    samples_a_day: Annotated[
-        int | None, typer.Option("--samples-a-day", help="Most camera samples in 24 hours, over all pixels.")
-    ] = None,
-    server: ServerOption = None,
-) -> None:
-    """Make a key and print it, the only time."""
-    quota = {"jobs": jobs, "bytes_a_day": bytes_a_day, "samples_a_day": samples_a_day}
-    with _client(server) as client:
-        print(client.call("POST", "/v1/keys", json={"name": name, "scope": scope, "quota": quota})["key"])
-
-
-@keys_app.command("list")
-def list_keys(server: ServerOption = None) -> None:
-    """List keys, oldest first, with what they used in 24 hours."""
-    with _client(server) as client:
-        keys: list[dict[str, Any]] = client.call("GET", "/v1/keys")["keys"]
-    for key in keys:
-        used = key["usage"]
-        print(
-            f"{key['id']}  {key['created_at']}  {key['scope']:6}  {key['name']}  "
-            f"{used['jobs']} jobs, {used['bytes']} bytes, {used['samples']} samples"
-        )
-
-
-@keys_app.command("drop")
-def drop_key(
-    key_id: Annotated[str, typer.Argument(metavar="ID", help="Id of the key.")], server: ServerOption = None
-) -> None:
-    """Drop a key: it opens nothing any more."""
-    with _client(server) as client:
-        client.call("DELETE", f"/v1/keys/{key_id}")
 
 
 @app.command()
@@ -339,60 +283,6 @@ def chart(
     from fluxfarm.cli.charting import chart_scenes
 
     chart_scenes(scenes, integrators, peers, seconds, seeds, size, reference, reference_spp, out)
-
-
-def _changed(settings: Settings, **options: Any) -> Settings:
-    """The settings with the options that were given; checked like variables of the environment."""
-    given = {f"{PREFIX}{name.upper()}": str(value) for name, value in options.items() if value is not None}
-    return from_environment({**os.environ, **given}) if given else settings
-
-
-def _client(server: str | None) -> "ServiceClient":
-    """Talks to the service that is told, else to where `fluxfarm serve` listens by default.
-
-    The key is that of the environment; for a service of this user on this machine also the one that it made itself."""
-    from fluxfarm.cli.client import ServiceClient
-
-    settings, key = from_environment(), os.environ.get(PREFIX + "API_KEY")
-    if server is not None:
-        return ServiceClient(server, key)
-    with suppress(OSError):
-        key = key or (settings.data / OWNER_KEY_FILE).read_text().strip()
-    return ServiceClient(f"http://{settings.reached_at}:{settings.port}", key)
-
-
-@contextmanager
-def _service(server: str | None, threads: int | None, workers: int | None) -> Iterator["ServiceClient"]:
-    """The service to render with; an embedded one, with a data folder that is removed, if none is told."""
-    if server is not None:
-        if threads is not None or workers is not None:
-            raise CommandError(Exit.BAD_INPUT, "--threads and --workers are settings of the service named by --server")
-        with _client(server) as client:
-            yield client
-        return
-    from fluxfarm import logs
-
-    with _loading():
-        from fluxfarm.cli.client import ServiceClient
-        from fluxfarm.cli.embedded import EmbeddedService
-
-    logs.set_up(os.environ.get(PREFIX + "LOG_LEVEL") or "critical")
-    with tempfile.TemporaryDirectory(prefix="fluxfarm-", ignore_cleanup_errors=True) as folder:
-        settings = _changed(from_environment(), threads=threads, workers=workers)
-        settings = replace(settings, data=Path(folder), port=0, sync="off", keys="off")
-        with EmbeddedService(settings) as service, ServiceClient(service.url) as client:
-            yield client
-
-
-@contextmanager
-def _loading() -> Iterator[None]:
-    """For slow imports: what they make stays, and looking for garbage in it costs a fifth of start and end."""
-    gc.disable()
-    try:
-        yield
-    finally:
-        gc.freeze()
-        gc.enable()
 
 
 def _give_up(client: Any, body: dict[str, Any], key: str) -> None:
