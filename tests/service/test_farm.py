@@ -174,3 +174,13 @@ def test_farm_without_certificates_is_refused_beyond_this_machine(address: str, 
         )
         assert ran.returncode == 3, ran.stderr
         assert words in ran.stderr
+
+
+def test_cancel_reaches_leases_that_are_still_on_their_way(nodes: Nodes) -> None:
+    client = nodes.client
+    assert client is not None
+    for _ in range(5):
+        job_id = client.submit("fake: size 64 64\nfake: spp 16\nfake: tile_seconds 60\n")
+        client.wait_until(job_id, lambda job: job["state"] == "RUNNING")
+        assert client.http.post(f"/v1/jobs/{job_id}:cancel").status_code == 200
+        nodes.wait_for(lambda workers: all(worker["state"] == "READY" for worker in workers), timeout_s=5)

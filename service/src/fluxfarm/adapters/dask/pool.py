@@ -84,8 +84,8 @@ class DaskPool:
         """Stop all work of a job; workers that do not stop in time replace their engine process."""
         self._home.cancel(job_id)
         for member in self._members.values():
-            if any(lease.job_id == job_id for lease in member.leases.values()):
-                self._background(self._cancel_at(member, job_id))
+            if fences := [lease.fence for lease in member.leases.values() if lease.job_id == job_id]:
+                self._background(self._cancel_at(member, job_id, fences))
 
     async def outcomes(self) -> AsyncIterator[Outcome | None]:
         """What all processes report, in order; None when only `workers` changed. One consumer."""
@@ -229,9 +229,11 @@ class DaskPool:
             found.append(TilesFinished(lease))
         return found
 
-    async def _cancel_at(self, member: "_Member", job_id: str) -> None:
+    async def _cancel_at(self, member: "_Member", job_id: str, fences: list[int]) -> None:
         if self._client is not None:
-            await answered(self._client.run(worker_side.cancel, job_id, workers=[member.address], on_error="ignore"))
+            await answered(
+                self._client.run(worker_side.cancel, job_id, fences, workers=[member.address], on_error="ignore")
+            )
 
     async def _hear_home(self) -> None:
         async for outcome in self._home.outcomes():

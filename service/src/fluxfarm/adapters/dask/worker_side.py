@@ -7,7 +7,8 @@ import asyncio
 import hashlib
 import logging
 import socket
-from collections.abc import AsyncIterator
+from collections import deque
+from collections.abc import AsyncIterator, Sequence
 from dataclasses import replace
 
 import fluxfarm
@@ -29,6 +30,7 @@ from fluxfarm.domain.scene import SceneBundle
 log = logging.getLogger(__name__)
 ENGINE = 1
 READY_TIMEOUT_S = 30.0
+MOST_CANCELLED = 10_000
 
 
 class WorkerHost:
@@ -38,6 +40,8 @@ class WorkerHost:
         self._blobs = FileBlobStore(engine.data, max_asset_bytes, durable=False)
         self._pool = LocalPool(engine, 1)
         self._waiting: dict[int, asyncio.Queue[Outcome]] = {}
+        # Fences of leases that were cancelled, maybe before they came.
+        self._cancelled: deque[int] = deque(maxlen=MOST_CANCELLED)
         self._router: asyncio.Task[None] | None = None
 
     async def start(self) -> None:
@@ -83,6 +87,8 @@ class WorkerHost:
             return Rendered(lost=("the engine process of the worker does not start", False))
         folder = await self._blobs.scene_folder(bundle)
         tiles_out = self._blobs.scratch(lease.job_id, str(lease.fence))
+        if lease.fence in self._cancelled:
+            return Rendered(failure=(FailureKind.CANCELLED, "cancelled before it began"))
         lease = replace(lease, scene=replace(lease.scene, folder=folder), tiles_out=tiles_out)
         outcomes: asyncio.Queue[Outcome] = asyncio.Queue()
         self._waiting[lease.fence] = outcomes
@@ -94,8 +100,9 @@ class WorkerHost:
             for position in range(len(lease.tiles)):
                 lease.file(position).unlink(missing_ok=True)
 
-    def cancel(self, job_id: str) -> None:
-        """Stop all work of a job."""
+    def cancel(self, job_id: str, fences: Sequence[int]) -> None:
+        """Stop all work of a job; leases with these fences that are still on their way do not begin."""
+        self._cancelled.extend(fences)
         self._pool.cancel(job_id)
 
     async def _collect(self, outcomes: "asyncio.Queue[Outcome]") -> Rendered:
@@ -156,6 +163,6 @@ async def render(lease: RenderLease, bundle: SceneBundle) -> Rendered:
     return await _host().render(lease, bundle)
 
 
-async def cancel(job_id: str) -> None:
+async def cancel(job_id: str, fences: Sequence[int]) -> None:
     """Stop all work of a job."""
-    _host().cancel(job_id)
+    _host().cancel(job_id, fences)
