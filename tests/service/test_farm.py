@@ -1,5 +1,7 @@
 """A service and workers as processes of their own, over TLS, with the fake engine: what goes wrong between them."""
 
+import asyncio
+import hashlib
 import os
 import signal
 import subprocess
@@ -10,6 +12,14 @@ from pathlib import Path
 import pytest
 from farm_client import Client
 from farm_nodes import COMMAND, Nodes
+
+from fluxfarm.adapters.dask.worker_side import WorkerHost
+from fluxfarm.adapters.engine.process import EngineCommand
+from fluxfarm.domain.leases import FailureKind, RenderLease, SceneRef
+from fluxfarm.domain.scene import SceneBundle
+from fluxfarm.domain.schedule import SampleRange
+from fluxfarm.domain.tiles import PixelRect
+from fluxfarm.settings import Settings
 
 SCENE = "fake: size 64 64\nfake: spp 16\nfake: tile_seconds 0.05\n"
 TILES, PASSES = 16, 5
@@ -176,11 +186,25 @@ def test_farm_without_certificates_is_refused_beyond_this_machine(address: str, 
         assert words in ran.stderr
 
 
-def test_cancel_reaches_leases_that_are_still_on_their_way(nodes: Nodes) -> None:
-    client = nodes.client
-    assert client is not None
-    for _ in range(5):
-        job_id = client.submit("fake: size 64 64\nfake: spp 16\nfake: tile_seconds 60\n")
-        client.wait_until(job_id, lambda job: job["state"] == "RUNNING")
-        assert client.http.post(f"/v1/jobs/{job_id}:cancel").status_code == 200
-        nodes.wait_for(lambda workers: all(worker["state"] == "READY" for worker in workers), timeout_s=5)
+def test_lease_that_comes_after_its_cancel_does_not_begin(settings: Settings) -> None:
+    scene = b"fake: size 16 16\nfake: tile_seconds 60\n"
+    sha256 = hashlib.sha256(scene).hexdigest()
+    bundle = SceneBundle("scene.xml", {"scene.xml": sha256})
+    ref = SceneRef("key", Path("elsewhere"), "scene.xml", 0, 0, "", bundle)
+    rect = PixelRect(0, 0, 16, 16)
+    lease = RenderLease(7, "job", ref, 0, 0, SampleRange(0, 1), (0,), (rect,), Path("elsewhere"))
+    command = EngineCommand(Path(settings.engine), 1, 30, settings.data, 0, False)
+
+    async def scenario() -> None:
+        host = WorkerHost(command, 1 << 20)
+        await host.start()
+        try:
+            assert (await host.render(lease, bundle)).missing == (sha256,)
+            await host.put(sha256, scene)
+            host.cancel("job", [7])
+            rendered = await asyncio.wait_for(host.render(lease, bundle), 20)
+            assert rendered.failure == (FailureKind.CANCELLED, "cancelled before it began")
+        finally:
+            await host.close()
+
+    asyncio.run(scenario())
