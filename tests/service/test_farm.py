@@ -147,6 +147,22 @@ def test_worker_with_another_engine_is_refused_by_name(tmp_path: Path, engine: P
         farm.close()
 
 
+def test_certificates_are_never_made_beside_a_part_of_others(tmp_path: Path) -> None:
+    def make() -> "subprocess.CompletedProcess[str]":
+        words = [*COMMAND, "certificates", str(tmp_path / "certs")]
+        return subprocess.run(words, capture_output=True, text=True, check=False)
+
+    assert make().returncode == 0
+    kept = {path.name: path.read_bytes() for path in (tmp_path / "certs").iterdir()}
+    assert all((tmp_path / "certs" / name).stat().st_mode & 0o777 == 0o600 for name in kept)
+    assert "has certificates already" in make().stdout
+    (tmp_path / "certs" / "node.pem").unlink()
+    refused = make()
+    assert refused.returncode == 3
+    assert "has ca.pem, ca.key, node.key and not the rest" in refused.stderr
+    assert (tmp_path / "certs" / "ca.pem").read_bytes() == kept["ca.pem"]
+
+
 def test_worker_with_certificates_of_another_farm_does_not_join(nodes: Nodes, tmp_path: Path) -> None:
     foreign = tmp_path / "foreign"
     subprocess.run([*COMMAND, "certificates", str(foreign)], check=True, stdout=subprocess.DEVNULL)
@@ -201,6 +217,7 @@ def test_lease_that_comes_after_its_cancel_does_not_begin(settings: Settings) ->
         try:
             assert (await host.render(lease, bundle)).missing == (sha256,)
             await host.put(sha256, scene)
+            host.cancel("another job", [7])
             host.cancel("job", [7])
             rendered = await asyncio.wait_for(host.render(lease, bundle), 20)
             assert rendered.failure == (FailureKind.CANCELLED, "cancelled before it began")

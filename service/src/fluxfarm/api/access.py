@@ -7,7 +7,6 @@ from fastapi.security import HTTPAuthorizationCredentials, HTTPBearer
 
 from fluxfarm.api.deps import Farm, Services
 from fluxfarm.domain.access import ApiKey, Scope
-from fluxfarm.domain.records import JobRecord
 from fluxfarm.errors import Forbidden, Unauthorized
 
 _bearer = HTTPBearer(
@@ -45,9 +44,8 @@ async def authorize(
 Caller = Annotated[ApiKey | None, Depends(authorize)]
 
 
-async def own_job(farm: Services, job_id: str, caller: ApiKey | None) -> JobRecord:
-    """The job, if `caller` may change it: jobs of others are for `admin`. Raises Forbidden, JobNotFound or Gone."""
+async def own_job(farm: Services, job_id: str, caller: ApiKey | None) -> None:
+    """Return if `caller` may change the job: those of others are for `admin`. Raises Forbidden, JobNotFound or Gone."""
     record = await farm.ledger.job(job_id)
     if caller is not None and caller.scope is not Scope.ADMIN and record.owner != caller.id:
         raise Forbidden(f"job {job_id}: was submitted with another key, and key {caller.name!r} is not of scope admin")
-    return record

@@ -1,7 +1,6 @@
 """Makes the certificates of a farm: an authority of its own, and one certificate for every machine that joins."""
 
 import datetime
-import os
 from pathlib import Path
 
 from cryptography import x509
@@ -10,6 +9,8 @@ from cryptography.hazmat.primitives.asymmetric import ec
 from cryptography.x509.oid import NameOID
 
 from fluxfarm.adapters.dask.security import FILES
+from fluxfarm.adapters.data_folder import write_secret
+from fluxfarm.errors import BadSetting
 
 YEARS = 10
 AUTHORITY_KEY = "ca.key"
@@ -18,11 +19,17 @@ AUTHORITY_KEY = "ca.key"
 def make_certificates(folder: Path) -> list[Path]:
     """Write an authority and a certificate with its key, unless they are there; returns the files that are new.
 
-    Whoever has the node's files may join the farm; the authority's key makes more of them and is not needed to run."""
+    Whoever has the node's files may join the farm; the authority's key makes more of them and is not needed to run.
+    Raises BadSetting where only some are there: new ones would not fit those of other machines."""
     folder.mkdir(parents=True, exist_ok=True)
     files = [folder / name for name in (FILES["ca"], AUTHORITY_KEY, FILES["certificate"], FILES["key"])]
-    if all(path.exists() for path in files if path.name != AUTHORITY_KEY):
+    here = [path.name for path in files if path.exists()]
+    if {*here, AUTHORITY_KEY} == {path.name for path in files}:
         return []
+    if here:
+        raise BadSetting(
+            f"{folder}: has {', '.join(here)} and not the rest; take an empty folder, or copy the others here"
+        )
     authority_key, node_key = ec.generate_private_key(ec.SECP256R1()), ec.generate_private_key(ec.SECP256R1())
     authority = x509.Name([x509.NameAttribute(NameOID.COMMON_NAME, "Fluxfarm authority")])
     node = x509.Name([x509.NameAttribute(NameOID.COMMON_NAME, "Fluxfarm node")])
@@ -37,7 +44,7 @@ def make_certificates(folder: Path) -> list[Path]:
         _pem(node_key),
     ]
     for path, content in zip(files, contents, strict=True):
-        _write(path, content)
+        write_secret(path, content.decode())
     return files
 
 
@@ -58,13 +65,3 @@ def _pem(key: ec.EllipticCurvePrivateKey) -> bytes:
     return key.private_bytes(
         serialization.Encoding.PEM, serialization.PrivateFormat.PKCS8, serialization.NoEncryption()
     )
-
-
-def _write(path: Path, content: bytes) -> None:
-    """Readable by this user alone."""
-    path.unlink(missing_ok=True)
-    descriptor = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600)
-    try:
-        os.write(descriptor, content)
-    finally:
-        os.close(descriptor)

@@ -190,7 +190,7 @@ class DaskPool:
         bundle = lease.scene.bundle
         for attempt in range(3):
             rendered: Rendered = await self._at(
-                member, worker_side.render, lease, bundle, key=f"lease-{lease.fence}-{attempt}"
+                member, worker_side.render, lease, bundle, key=f"{lease.job_id}-{lease.fence}-{attempt}"
             )
             if not rendered.missing:
                 return rendered

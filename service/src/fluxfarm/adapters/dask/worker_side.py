@@ -39,9 +39,10 @@ class WorkerHost:
     def __init__(self, engine: EngineCommand, max_asset_bytes: int) -> None:
         self._blobs = FileBlobStore(engine.data, max_asset_bytes, durable=False)
         self._pool = LocalPool(engine, 1)
-        self._waiting: dict[int, asyncio.Queue[Outcome]] = {}
-        # Fences of leases that were cancelled, maybe before they came.
-        self._cancelled: deque[int] = deque(maxlen=MOST_CANCELLED)
+        # By job and fence: fences of two services may be the same.
+        self._waiting: dict[tuple[str, int], asyncio.Queue[Outcome]] = {}
+        # Leases that were cancelled, maybe before they came.
+        self._cancelled: deque[tuple[str, int]] = deque(maxlen=MOST_CANCELLED)
         self._router: asyncio.Task[None] | None = None
 
     async def start(self) -> None:
@@ -87,22 +88,23 @@ class WorkerHost:
             return Rendered(lost=("the engine process of the worker does not start", False))
         folder = await self._blobs.scene_folder(bundle)
         tiles_out = self._blobs.scratch(lease.job_id, str(lease.fence))
-        if lease.fence in self._cancelled:
+        name = (lease.job_id, lease.fence)
+        if name in self._cancelled:
             return Rendered(failure=(FailureKind.CANCELLED, "cancelled before it began"))
         lease = replace(lease, scene=replace(lease.scene, folder=folder), tiles_out=tiles_out)
         outcomes: asyncio.Queue[Outcome] = asyncio.Queue()
-        self._waiting[lease.fence] = outcomes
+        self._waiting[name] = outcomes
         try:
             self._pool.submit(ENGINE, lease)
             return await self._collect(outcomes)
         finally:
-            del self._waiting[lease.fence]
+            del self._waiting[name]
             for position in range(len(lease.tiles)):
                 lease.file(position).unlink(missing_ok=True)
 
     def cancel(self, job_id: str, fences: Sequence[int]) -> None:
         """Stop all work of a job; leases with these fences that are still on their way do not begin."""
-        self._cancelled.extend(fences)
+        self._cancelled.extend((job_id, fence) for fence in fences)
         self._pool.cancel(job_id)
 
     async def _collect(self, outcomes: "asyncio.Queue[Outcome]") -> Rendered:
@@ -126,9 +128,10 @@ class WorkerHost:
 
     async def _route(self) -> None:
         async for outcome in self._pool.outcomes():
-            waiting = None if outcome is None else self._waiting.get(outcome.lease.fence)
-            if outcome is not None and waiting is not None:
-                waiting.put_nowait(outcome)
+            if outcome is not None:
+                waiting = self._waiting.get((outcome.lease.job_id, outcome.lease.fence))
+                if waiting is not None:
+                    waiting.put_nowait(outcome)
 
     async def _engine_is_ready(self) -> bool:
         end = asyncio.get_running_loop().time() + READY_TIMEOUT_S

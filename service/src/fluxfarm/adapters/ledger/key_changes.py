@@ -1,7 +1,7 @@
 """Changes of the ledger that belong to API keys: the keys, what they used, and their quotas.
 
-Each is a function that works inside one transaction of the writer, so that two requests at once cannot both take the
-last of a quota.
+Each is a function that works inside one transaction. A job's quota is looked at in that which records the job, so that
+two at once cannot both be the last; uploads at once may each take the bytes that are left.
 """
 
 import time
